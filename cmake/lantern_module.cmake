@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+
+# Warnings and sanitizers of everything that is ours.
+add_library(lantern_options INTERFACE)
+target_compile_options(lantern_options INTERFACE
+  -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wnon-virtual-dtor -Wold-style-cast
+  -Wunused -Woverloaded-virtual
+  # One rounding per operation, so that a picture's bits do not depend on what the compiler fuses.
+  -ffp-contract=off)
+if(LANTERN_SANITIZE)
+  target_compile_options(lantern_options INTERFACE
+    -fsanitize=${LANTERN_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(lantern_options INTERFACE -fsanitize=${LANTERN_SANITIZE})
+endif()
+
+# lantern_module(NAME SOURCES ... HEADERS ... PUBLIC ... PRIVATE ...): the library lantern::NAME of the
+# folder src/lantern/NAME; each header is checked to compile alone.
+function(lantern_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE" ${ARGN})
+  add_library(lantern_${name} STATIC ${ARG_SOURCES})
+  add_library(lantern::${name} ALIAS lantern_${name})
+  target_sources(lantern_${name} PUBLIC FILE_SET HEADERS
+    BASE_DIRS ${PROJECT_SOURCE_DIR}/src FILES ${ARG_HEADERS})
+  target_link_libraries(lantern_${name} PUBLIC ${ARG_PUBLIC} PRIVATE lantern_options ${ARG_PRIVATE})
+endfunction()
+
+# lantern_test(NAME SOURCES ... LINK ...): a GoogleTest program; every test in it becomes a CTest test.
+function(lantern_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE lantern_options lantern_test_support ${ARG_LINK})
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300)
+endfunction()

@@ -1,0 +1,2 @@
+// SPDX-License-Identifier: MIT
+#include "lantern/trace/brute_force.h"

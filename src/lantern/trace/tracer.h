@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// Closest hits and occlusion in a World. Two implementations that share nothing but this: Embree
+// and brute force. Holes of alpha-masked materials let every ray through.
+#pragma once
+
+#include "lantern/scene/scene.h"
+#include "lantern/scene/world.h"
+
+#include <cstdint>
+#include <memory>
+
+namespace lantern {
+
+struct Ray {
+  Vec3 origin{0.0f};
+  Vec3 direction{0.0f, 0.0f, 1.0f};  // need not be unit length; distances are in its lengths
+  float near = 0.0f;
+  float far = kInfinity;
+};
+
+struct Hit {
+  float distance = kInfinity;  // in lengths of the ray's direction
+  std::uint32_t triangle = 0;
+  Vec2 uv{0.0f};  // barycentric weights of the triangle's second and third vertex
+
+  explicit operator bool() const { return distance < kInfinity; }
+};
+
+/// Sixteen rays as structure of arrays, the layout Embree takes.
+inline constexpr int kPacket = 16;
+struct alignas(64) RayPacket {
+  float origin_x[kPacket], origin_y[kPacket], origin_z[kPacket], near[kPacket];
+  float direction_x[kPacket], direction_y[kPacket], direction_z[kPacket], time[kPacket];
+  float far[kPacket];
+  std::uint32_t mask[kPacket], id[kPacket], flags[kPacket];
+};
+/// 0: the lane is idle; -1: it holds a ray.
+struct alignas(64) LaneMask {
+  std::int32_t lane[kPacket];
+};
+
+class Tracer {
+ public:
+  virtual ~Tracer() = default;
+
+  virtual Hit closest(const Ray& ray) const = 0;
+  virtual bool occluded(const Ray& ray) const = 0;
+  /// Bit i is set where ray i of the active lanes is blocked. Overwrites `far` of blocked lanes.
+  virtual std::uint32_t occluded(const LaneMask& active, RayPacket& packet) const = 0;
+  /// Closest hits of the active lanes; idle lanes come back empty.
+  virtual void closest(const LaneMask& active, RayPacket& packet, Hit* hits) const = 0;
+};
+
+}  // namespace lantern
