@@ -14,7 +14,8 @@ class Findings {
   template <typename... Args>
   void add(fmt::format_string<Args...> text, Args&&... args) {
     constexpr std::size_t kNamed = 4;
-    if (++count_ <= kNamed) text_ += (text_.empty() ? "" : "; ") + fmt::format(text, args...);
+    if (++count_ <= kNamed)
+      text_ += (text_.empty() ? "" : "; ") + fmt::format(text, std::forward<Args>(args)...);
   }
   void throw_if_any(const std::string& file) const {
     if (count_ == 0) return;
