@@ -32,7 +32,9 @@ class IncrementalRadicalInverse {
  private:
   std::uint32_t base_;
   std::vector<std::uint32_t> digits_;
-  double value_ = 0.0;
+  std::vector<std::uint64_t> weights_;  // of each digit in the numerator, base^(count - 1 - k)
+  std::uint64_t numerator_ = 0;
+  std::uint64_t denominator_ = 1;
 };
 
 enum class Sampler {

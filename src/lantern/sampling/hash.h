@@ -20,6 +20,9 @@ constexpr std::uint64_t hash(std::uint64_t a, std::uint64_t b, std::uint64_t c) 
   return hash(hash(a, b) ^ c);
 }
 
+/// The largest float of [0, 1).
+inline constexpr float kBelowOne = 0x1.fffffep-1f;
+
 /// The top 24 bits as a float in [0, 1).
 constexpr float to_unit_float(std::uint64_t bits) {
   return static_cast<float>(bits >> 40) * 0x1.0p-24f;
