@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How far one picture is from another.
+// How far one picture is from another. Sums are taken in double precision in the order of the
+// pixels, so that the numbers do not depend on anything but the pictures. Errors: Error if the
+// pictures have no pixels, differ in size or hold a value that is not finite (the first is named).
 #pragma once
 
 #include "lantern/image/image.h"
@@ -7,14 +9,14 @@
 namespace lantern {
 
 struct Comparison {
-  double rmse = 0.0;    // root of the mean squared difference over pixels and channels
+  double rmse = 0.0;    // root of the mean of (a-b)² over pixels and channels
   double relmse = 0.0;  // mean of (a-b)²/(b²+0.01) over pixels and channels, b the reference
-  double max_difference = 0.0;
-  glm::dvec3 mean_a{0.0};
+  double max_difference = 0.0;  // largest |a-b| of any pixel and channel
+  glm::dvec3 mean_a{0.0};       // per channel
   glm::dvec3 mean_b{0.0};
 };
 
-/// `b` is the reference. Throws Error if the sizes differ or a value is not finite.
+/// `b` is the reference.
 Comparison compare(const Image& a, const Image& b);
 
 }  // namespace lantern

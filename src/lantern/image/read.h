@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Picture files into linear floats. Errors: Error with the path, also for pictures whose claimed
-// size the file cannot hold or memory should not.
+// size the file cannot hold or memory should not (over 2^28 pixels). Values that are not finite
+// come through as they are.
 #pragma once
 
 #include "lantern/image/image.h"
@@ -16,6 +17,7 @@ namespace lantern {
 
 /// RGBA texels of any readable picture, row 0 at the top. Just one vector is filled: `srgb8` for
 /// 8-bit files (as stored, 4 bytes a pixel), `linear` for EXR, HDR and PFM (4 floats a pixel).
+/// Alpha is 255 or 1 where the file has none.
 struct Raster {
   int width = 0;
   int height = 0;
@@ -24,6 +26,9 @@ struct Raster {
 };
 
 /// EXR, HDR, PFM, PNG, JPEG, TGA, BMP; the content decides, not the name. `name` is for messages.
+/// EXR: one flat part, scan lines or tiles (the finest level), channels R G B or Y, A optional; the
+/// picture is the data window. PNG of 16 bits is rounded down to 8. The scale of a PFM is not
+/// applied; EXPOSURE of an HDR is undone, so that radiance comes out.
 Raster decode_raster(std::span<const std::byte> bytes, const std::string& name);
 
 /// A picture as linear radiance (8-bit files are decoded from sRGB, alpha is dropped).

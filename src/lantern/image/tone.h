@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Linear radiance to 8-bit sRGB.
+// Linear radiance to 8-bit sRGB. Every number has an answer: what is negative or no number becomes
+// black, infinity white.
 #pragma once
 
 #include "lantern/core/math.h"
@@ -9,9 +10,13 @@
 
 namespace lantern {
 
+/// Both curves work on each channel alone. Clipping turns the hue of a bright saturated colour
+/// towards the nearest of red, green, blue, cyan, magenta, yellow and white; the filmic curve does
+/// it gradually and pales the colour on the way, as film does.
 enum class ToneCurve {
   kPlain,   // clip at 1
-  kFilmic,  // roll off highlights
+  kFilmic,  // roll off highlights: 0.18 becomes 0.27, 1 becomes 0.80, white from 7.2 up
+            // [Narkowicz 2015, ACES Filmic Tone Mapping Curve], without its optional factor 0.6
 };
 
 struct Tone {
@@ -19,8 +24,11 @@ struct Tone {
   ToneCurve curve = ToneCurve::kPlain;
 };
 
-/// sRGB encoding of a linear value in [0, 1] (IEC 61966-2-1), itself in [0, 1].
+/// sRGB encoding of a linear value in [0, 1] (IEC 61966-2-1), itself in [0, 1]; clips beyond.
 float linear_to_srgb(float linear);
+
+/// The inverse.
+float srgb_to_linear(float srgb);
 
 std::array<std::uint8_t, 3> to_srgb8(const Rgb& radiance, const Tone& tone);
 

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// libpng reports errors with longjmp, so what is between setjmp and a call of it has nothing to
+// destroy.
+#include "lantern/core/error.h"
+#include "lantern/image/codec.h"
+
+#include <png.h>
+
+#include <algorithm>
+#include <csetjmp>
+#include <cstring>
+
+namespace lantern::codec {
+namespace {
+
+/// The longest keyword that PNG allows.
+constexpr std::size_t kLongestKey = 79;
+
+struct Problem {
+  char text[128] = "";
+};
+
+void on_error(png_structp png, png_const_charp message) {
+  auto* problem = static_cast<Problem*>(png_get_error_ptr(png));
+  std::strncpy(problem->text, message, sizeof problem->text - 1);
+  png_longjmp(png, 1);
+}
+
+void on_warning(png_structp, png_const_charp) {}
+
+struct Writer {
+  Writer() : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, &problem, on_error, on_warning)) {
+    info = png ? png_create_info_struct(png) : nullptr;
+    if (!info) {
+      png_destroy_write_struct(&png, nullptr);
+      throw std::bad_alloc();
+    }
+  }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+  ~Writer() { png_destroy_write_struct(&png, &info); }
+
+  Problem problem;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+};
+
+struct Reader {
+  Reader() : png(png_create_read_struct(PNG_LIBPNG_VER_STRING, &problem, on_error, on_warning)) {
+    info = png ? png_create_info_struct(png) : nullptr;
+    if (!info) {
+      png_destroy_read_struct(&png, nullptr, nullptr);
+      throw std::bad_alloc();
+    }
+  }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+  ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
+
+  Problem problem;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+};
+
+void append(png_structp png, png_bytep data, std::size_t size) {
+  auto& bytes = *static_cast<Bytes*>(png_get_io_ptr(png));
+  const auto* from = reinterpret_cast<const std::byte*>(data);
+  try {
+    bytes.insert(bytes.end(), from, from + size);
+    return;
+  } catch (const std::exception&) {
+    // The jump must not leave a handler: it happens below.
+  }
+  png_error(png, "out of memory");
+}
+
+void flush_nothing(png_structp) {}
+
+void take(png_structp png, png_bytep to, std::size_t size) {
+  auto& rest = *static_cast<View*>(png_get_io_ptr(png));
+  if (size > rest.size()) png_error(png, "the file ends too early");
+  std::memcpy(to, rest.data(), size);
+  rest = rest.subspan(size);
+}
+
+/// The texts as libpng takes them, and what they point to.
+struct Texts {
+  explicit Texts(const Metadata& metadata) {
+    for (const auto& [key, value] : metadata) {
+      keys.push_back(std::string(kKeyPrefix) + key);
+      values.push_back(value);
+    }
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      png_text text{};
+      // tEXt is Latin-1 by definition, iTXt is UTF-8.
+      const bool ascii = std::all_of(values[i].begin(), values[i].end(),
+                                     [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+      text.compression = ascii ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
+      text.key = keys[i].data();
+      text.text = values[i].data();
+      (ascii ? text.text_length : text.itxt_length) = values[i].size();
+      texts.push_back(text);
+    }
+  }
+  Texts(const Texts&) = delete;
+  Texts& operator=(const Texts&) = delete;
+
+  std::vector<std::string> keys;
+  std::vector<std::string> values;
+  std::vector<png_text> texts;
+};
+
+void to_row(const Image& image, int y, const Tone& tone, std::uint8_t* row) {
+  for (int x = 0; x < image.width; ++x) {
+    const auto bytes = to_srgb8(image.at(x, y), tone);
+    row = std::copy(bytes.begin(), bytes.end(), row);
+  }
+}
+
+bool write_all(Writer& writer, const Image& image, const Tone& tone, Texts& texts,
+               std::uint8_t* row) {
+  png_structp png = writer.png;
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_set_IHDR(png, writer.info, static_cast<png_uint_32>(image.width),
+               static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+  png_set_text(png, writer.info, texts.texts.data(), static_cast<int>(texts.texts.size()));
+  png_write_info(png, writer.info);
+  for (int y = 0; y < image.height; ++y) {
+    to_row(image, y, tone, row);
+    png_write_row(png, row);
+  }
+  png_write_end(png, nullptr);
+  return true;
+}
+
+bool read_texts(Reader& reader, View& bytes) {
+  if (setjmp(png_jmpbuf(reader.png))) return false;
+  png_set_read_fn(reader.png, &bytes, take);
+  png_read_info(reader.png, reader.info);
+  return true;
+}
+
+}  // namespace
+
+bool is_png(View bytes) { return starts_with(bytes, "\x89PNG\r\n\x1a\n"); }
+
+Metadata png_metadata(View bytes, const std::string& name) {
+  Reader reader;
+  if (!read_texts(reader, bytes)) fail({name}, "broken PNG: {}", reader.problem.text);
+  png_textp texts = nullptr;
+  int count = 0;
+  png_get_text(reader.png, reader.info, &texts, &count);
+  Metadata metadata;
+  for (const png_text& text : std::span(texts, static_cast<std::size_t>(count))) {
+    const std::string_view key = text.key;
+    if (key.starts_with(kKeyPrefix)) metadata.emplace(key.substr(kKeyPrefix.size()), text.text);
+  }
+  return metadata;
+}
+
+Bytes encode_png(const Image& image, const WriteOptions& options, const std::string& name) {
+  Texts texts(options.metadata);
+  for (const std::string& key : texts.keys) {
+    if (key.size() > kLongestKey) fail({name}, "PNG has no room for the key {}", key);
+  }
+  Bytes bytes;
+  std::vector<std::uint8_t> row(3 * static_cast<std::size_t>(image.width));
+  Writer writer;
+  png_set_write_fn(writer.png, &bytes, append, flush_nothing);
+  if (!write_all(writer, image, options.tone, texts, row.data())) {
+    fail({name}, "cannot be written as PNG: {}", writer.problem.text);
+  }
+  return bytes;
+}
+
+}  // namespace lantern::codec
