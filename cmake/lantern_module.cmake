@@ -12,6 +12,9 @@ if(LANTERN_SANITIZE)
     -fsanitize=${LANTERN_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(lantern_options INTERFACE -fsanitize=${LANTERN_SANITIZE})
 endif()
+if(LANTERN_WITH_FUZZERS)
+  target_compile_options(lantern_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 
 # lantern_module(NAME SOURCES ... HEADERS ... PUBLIC ... PRIVATE ...): the library lantern::NAME of the
 # folder src/lantern/NAME; each header is checked to compile alone.
