@@ -79,20 +79,39 @@ double plain(const Base& base, std::uint64_t index) {
   return static_cast<double>(numerator) / static_cast<double>(denominator);
 }
 
-/// The permutation of a digit d is d -> a d + c (mod b), a in 1..b-1 and c in 0..b-1 hashed from
-/// the digits before it. For prime b these maps carry every pair of digits to every pair alike,
-/// and the variance of nested uniform scrambling rests on pairs alone. The zeros behind the last
-/// digit of the index are permuted as well, else small indices would stay on a lattice.
+/// Nested scrambling in base 2, where a permutation is one bit: a hash has enough of them for the
+/// 31 prefixes that five more digits can have, numbered 1, 2..3, 4..7, ... as the nodes of a tree.
+double scrambled_binary(std::uint64_t index, std::uint64_t key) {
+  constexpr int kDigits = 25, kDigitsPerHash = 5;
+  static_assert(kDigits % kDigitsPerHash == 0 && std::uint64_t{1} << kDigits >= kFloatSteps);
+  std::uint64_t numerator = 0;
+  for (int position = 0; position < kDigits; position += kDigitsPerHash) {
+    const std::uint64_t place = std::uint64_t{1} << position;
+    const std::uint64_t flips = hash(key + place + (index & (place - 1)));
+    std::uint64_t node = 1;
+    for (int k = 0; k < kDigitsPerHash; ++k) {
+      const std::uint64_t digit = (index >> (position + k)) & 1u;
+      numerator = 2 * numerator + (digit ^ ((flips >> node) & 1u));
+      node = 2 * node + digit;
+    }
+  }
+  return static_cast<double>(numerator) / static_cast<double>(std::uint64_t{1} << kDigits);
+}
+
+/// Nested scrambling in a prime base. The permutation of a digit d is d -> a d + c (mod b), a in
+/// 1..b-1 and c in 0..b-1 hashed from the digits before it; the place b^k in front of them tells
+/// prefixes of unequal length apart. These maps carry every pair of digits to every pair alike, and
+/// the variance of nested uniform scrambling rests on pairs alone. The zeros behind the last digit
+/// of the index are permuted as well, else small indices would stay on a lattice.
 double scrambled(const Base& base, std::uint64_t index, std::uint64_t seed) {
-  constexpr int kPositionBits = 5;       // no base needs more than 24 digits
-  const std::uint64_t key = hash(seed);  // near seeds must not share the counters below
+  const std::uint64_t key = hash(seed);  // near seeds must not share the numbers hashed below
   const std::uint64_t b = base.value();
+  if (b == 2) return scrambled_binary(index, key);
   std::uint64_t numerator = 0, prefix = 0, place = 1;
-  for (int position = 0; position < base.scrambled_digits(); ++position) {
+  for (int k = 0; k < base.scrambled_digits(); ++k) {
     const std::uint64_t quotient = base.divide(index);
     const std::uint64_t digit = index - quotient * b;
-    const std::uint64_t bits =
-        hash(key + (prefix << kPositionBits) + static_cast<std::uint64_t>(position));
+    const std::uint64_t bits = hash(key + place + prefix);
     const std::uint64_t a = 1 + (((bits >> 32) * (b - 1)) >> 32);
     const std::uint64_t c = ((bits & 0xffffffffu) * b) >> 32;
     const std::uint64_t image = a * digit + c;
@@ -123,8 +142,9 @@ double scrambled_radical_inverse(std::uint32_t base, std::uint64_t index, std::u
 
 IncrementalRadicalInverse::IncrementalRadicalInverse(std::uint32_t base) : base_(base) {
   assert(base >= 2);
-  for (; denominator_ <= (kExact - 1) / base; denominator_ *= base)
+  for (; denominator_ <= (kExact - 1) / base; denominator_ *= base) {
     weights_.push_back(denominator_);
+  }
   std::reverse(weights_.begin(), weights_.end());
   digits_.resize(weights_.size());
 }

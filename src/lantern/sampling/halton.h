@@ -18,7 +18,8 @@ std::uint32_t halton_base(int dimension);
 double radical_inverse(std::uint32_t base, std::uint64_t index);
 
 /// The radical inverse with each digit permuted at random, the permutation depending on the digits
-/// before it: nested uniform scrambling [Owen 1995], driven by `seed`.
+/// before it: nested uniform scrambling [Owen 1995], driven by `seed`. `base` must be prime.
+/// Resolves the steps of a float: 2^-24 or less.
 double scrambled_radical_inverse(std::uint32_t base, std::uint64_t index, std::uint64_t seed);
 
 /// The radical inverses of 0, 1, 2, ... without division: the mirrored digits are counted up with a
