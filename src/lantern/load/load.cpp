@@ -1,15 +1,65 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/load/load.h"
 
+#include "lantern/core/error.h"
+#include "lantern/core/file.h"
+#include "lantern/load/assimp_scene.h"
+#include "lantern/load/gltf_scene.h"
+#include "lantern/scene/validate.h"
+
 #include <algorithm>
 #include <utility>
 
 namespace lantern {
+namespace {
+
+Loaded load_by_name(const std::filesystem::path& path, const LoadOptions& options) {
+  const std::string last = extension(path);
+  if (last == ".gltf" || last == ".glb") return load_gltf(path, options);
+  return load_assimp(path, options);
+}
+
+/// Lengths become metres, and the lights without area keep the picture as it is: what a point
+/// light sends to a surface falls with the square of the distance.
+void apply_unit(Scene& scene, float unit) {
+  for (Mesh& mesh : scene.meshes) {
+    for (Vec3& p : mesh.positions) p *= unit;
+  }
+  for (Instance& instance : scene.instances) {
+    instance.transform[3] = Vec4(Vec3(instance.transform[3]) * unit, instance.transform[3].w);
+  }
+  for (Camera& camera : scene.cameras) camera.eye *= unit;
+  for (PunctualLight& light : scene.lights) {
+    light.position *= unit;
+    if (light.kind != PunctualKind::kDirectional) light.intensity *= unit * unit;
+  }
+}
+
+bool has_triangles(const Scene& scene) {
+  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
+    return !scene.meshes[index(instance.mesh)].triangles.empty();
+  });
+}
+
+}  // namespace
 
 void LoadReport::warn(std::string text) {
   if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) {
     warnings.push_back(std::move(text));
   }
+}
+
+Loaded load_scene(const std::filesystem::path& path, const LoadOptions& options) {
+  if (!(options.unit > 0.0f) || !std::isfinite(options.unit)) {
+    throw Error(fmt::format("a unit of {} metres is not a length", options.unit));
+  }
+  Loaded loaded = load_by_name(path, options);
+  if (options.unit != 1.0f) apply_unit(loaded.scene, options.unit);
+  for (std::string& warning : validate(loaded.scene, path.string())) {
+    loaded.report.warn(std::move(warning));
+  }
+  if (!has_triangles(loaded.scene)) fail({path.string()}, "has no triangles");
+  return loaded;
 }
 
 }  // namespace lantern
