@@ -6,6 +6,7 @@
 
 #include "lantern/core/math.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -16,7 +17,7 @@ namespace lantern {
 enum class LightKind : std::uint8_t {
   kSurface,      // Lambertian point: intensity Φ/π · max(0, cos_y), nothing behind its surface
   kPoint,        // intensity Φ/(4π) in every direction
-  kSpot,         // intensity `axis_intensity()` · smooth falloff between the two cone cosines
+  kSpot,         // intensity Φ / spot_solid_angle() · spot_falloff(cos_y)
   kDirectional,  // from infinity along `normal`: `flux` is irradiance in W/m² on a facing surface
 };
 
@@ -34,5 +35,19 @@ struct VirtualLights {
 
   std::size_t size() const { return position.size(); }
 };
+
+/// Share of the axis' intensity at an angle of cosine `cos_y` from it, for cone = (cos inner, cos
+/// outer): the square of a ramp in the cosine, as glTF's KHR_lights_punctual suggests.
+inline float spot_falloff(float cos_y, const Vec2& cone) {
+  const float ramp = (cos_y - cone.y) / std::max(cone.x - cone.y, 1e-4f);
+  const float clamped = std::min(std::max(ramp, 0.0f), 1.0f);
+  return clamped * clamped;
+}
+
+/// Flux of a spot light over its intensity on the axis: the integral of the falloff over the
+/// sphere.
+inline float spot_solid_angle(const Vec2& cone) {
+  return 2.0f * kPi * ((1.0f - cone.x) + (cone.x - cone.y) * (1.0f / 3.0f));
+}
 
 }  // namespace lantern

@@ -5,6 +5,7 @@
 
 #include "lantern/scene/scene.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -20,6 +21,13 @@ struct World {
   Bounds bounds;
 
   std::size_t size() const { return triangles.size(); }
+
+  /// The largest coordinate, which the rounding of positions is relative to.
+  float coordinate_scale() const {
+    if (bounds.empty()) return 0.0f;
+    const Vec3 extreme = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
+    return std::max(extreme.x, std::max(extreme.y, extreme.z));
+  }
 
   /// cross(b - a, c - a): twice the area along the front's normal.
   Vec3 area_vector(std::uint32_t triangle) const {

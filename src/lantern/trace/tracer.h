@@ -39,6 +39,14 @@ struct alignas(64) LaneMask {
   std::int32_t lane[kPacket];
 };
 
+/// A point a hair off its surface, on the side of `normal`, from where rays start and where shadow
+/// rays end without meeting the surface itself. `scale` is the largest coordinate of the scene:
+/// float positions err by its rounding, not by their own. See World::coordinate_scale().
+inline Vec3 off_surface(const Vec3& position, const Vec3& normal, float scale) {
+  constexpr float kOffset = 0x1p-18f;  // 32 roundings of the largest coordinate
+  return position + normal * (kOffset * scale);
+}
+
 class Tracer {
  public:
   virtual ~Tracer() = default;

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: MIT
+#include "lantern/gather/gather.h"
+
+#include "lantern/sampling/hash.h"
+#include "lantern/sampling/warp.h"
+#include "lantern/scene/surface.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace lantern {
+namespace {
+
+constexpr int kBlock = 4;  // pixels along the side of a packet
+constexpr int kTile = 32;  // pixels along the side of what one task works on
+static_assert(kBlock * kBlock == kPacket && kTile % kBlock == 0);
+
+/// Fractional part of n times an irrational, plus a shift: the R sequences, whose first n points
+/// are well spread for every n. [Roberts 2018, The Unreasonable Effectiveness of Quasirandom
+/// Sequences]
+Vec2 r2(std::uint64_t n, Vec2 shift) {
+  constexpr double kPlastic = 1.32471795724474602596;
+  const double x = static_cast<double>(n) * (1.0 / kPlastic) + static_cast<double>(shift.x);
+  const double y =
+      static_cast<double>(n) * (1.0 / (kPlastic * kPlastic)) + static_cast<double>(shift.y);
+  return {static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y))};
+}
+
+/// Rays from the eye through points of the picture, given in pixels from its upper left corner.
+class Eye {
+ public:
+  Eye(const Camera& camera, int width, int height) : origin_(camera.eye) {
+    const Vec3 forward = glm::normalize(camera.forward);
+    const Vec3 right = glm::normalize(glm::cross(forward, camera.up));
+    const Vec3 up = glm::cross(right, forward);
+    const float half_height = std::tan(0.5f * camera.vertical_fov);
+    const float pixel = 2.0f * half_height / static_cast<float>(height);
+    step_x_ = right * pixel;
+    step_y_ = -up * pixel;
+    corner_ = forward - step_x_ * (0.5f * static_cast<float>(width)) -
+              step_y_ * (0.5f * static_cast<float>(height));
+  }
+
+  Vec3 origin() const { return origin_; }
+  Vec3 direction(float x, float y) const { return corner_ + step_x_ * x + step_y_ * y; }
+
+ private:
+  Vec3 origin_, corner_, step_x_, step_y_;
+};
+
+/// A point that light is gathered at, on its way to a pixel.
+struct ShadingPoint {
+  Vec3 position;  // off the surface, on the side it is seen from
+  Vec3 shading_normal;
+  Vec3 geometric_normal;
+  Rgb throughput;  // of the radiance that leaves it, times its reflectance
+  std::uint32_t pixel;
+  std::uint32_t stream;  // picks the random numbers of what follows from it
+  std::uint32_t depth;   // how often the bound was compensated to get here
+};
+
+class TileGatherer {
+ public:
+  TileGatherer(const GatherInput& input, const GatherLights& lights, const GatherOptions& options,
+               float bound, GatherCounts& counts)
+      : in_(input),
+        lights_(lights),
+        options_(options),
+        bound_(bound),
+        scale_(input.world.coordinate_scale()),
+        eye_(input.camera, options.width, options.height),
+        counts_(counts) {}
+
+  void run(int x0, int y0, Image& image) {
+    const int x1 = std::min(x0 + kTile, options_.width);
+    const int y1 = std::min(y0 + kTile, options_.height);
+    for (int sample = 0; sample < options_.samples; ++sample) {
+      for (int y = y0; y < y1; y += kBlock) {
+        for (int x = x0; x < x1; x += kBlock) see_block(x, y, sample, image);
+      }
+    }
+    // What the bound took comes back from points that are hit close by, and what it took there from
+    // further ones, until none is left.
+    while (!next_.empty()) {
+      current_.swap(next_);
+      next_.clear();
+      for (std::size_t i = 0; i < current_.size(); i += kPacket) {
+        const std::size_t n = std::min<std::size_t>(kPacket, current_.size() - i);
+        gather_at(std::span(current_).subspan(i, n), image);
+      }
+    }
+  }
+
+ private:
+  void see_block(int x0, int y0, int sample, Image& image) {
+    const auto n =
+        static_cast<std::uint64_t>(options_.pass) * static_cast<std::uint64_t>(options_.samples) +
+        static_cast<std::uint64_t>(sample);
+    const Vec2 offset = r2(n, Vec2(0.5f));
+    RayPacket rays{};
+    LaneMask active{};
+    std::uint32_t pixels[kPacket];
+    const Vec3 origin = eye_.origin();
+    for (int i = 0; i < kPacket; ++i) {
+      const int x = x0 + i % kBlock, y = y0 + i / kBlock;
+      const Vec3 direction =
+          eye_.direction(static_cast<float>(x) + offset.x, static_cast<float>(y) + offset.y);
+      const bool inside = x < options_.width && y < options_.height;
+      active.lane[i] = inside ? -1 : 0;
+      pixels[i] = inside ? static_cast<std::uint32_t>(y * options_.width + x) : 0;
+      set_ray(rays, i, origin, direction);
+      counts_.camera_rays += inside ? 1 : 0;
+    }
+    Hit hits[kPacket];
+    in_.tracer.closest(active, rays, hits);
+
+    ShadingPoint points[kPacket];
+    std::size_t count = 0;
+    const float share = 1.0f / static_cast<float>(options_.samples);
+    for (int i = 0; i < kPacket; ++i) {
+      if (active.lane[i] == 0) continue;
+      const Vec3 direction(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]);
+      Rgb& pixel = image.pixels[pixels[i]];
+      if (!hits[i]) {
+        pixel += share * background(direction);
+        continue;
+      }
+      const bool front = seen_from_front(hits[i], direction);
+      pixel += share * emission_at(in_.scene, in_.world, hits[i].triangle, hits[i].uv, front);
+      const SurfacePoint surface = surface_at(in_.scene, in_.world, hits[i].triangle, hits[i].uv);
+      if (is_black(surface.reflectance)) continue;
+      points[count++] =
+          shading_point(surface, front, surface.shading_normal, share * surface.reflectance,
+                        pixels[i], static_cast<std::uint32_t>(sample));
+    }
+    gather_at(std::span(points, count), image);
+  }
+
+  bool seen_from_front(const Hit& hit, const Vec3& direction) const {
+    return glm::dot(in_.world.area_vector(hit.triangle), direction) < 0.0f;
+  }
+
+  Rgb background(const Vec3& direction) const { return in_.emitters.sky_radiance(-direction); }
+
+  ShadingPoint shading_point(const SurfacePoint& surface, bool front, const Vec3& shading_normal,
+                             const Rgb& throughput, std::uint32_t pixel, std::uint32_t stream,
+                             std::uint32_t depth) const {
+    const float side = front ? 1.0f : -1.0f;
+    const Vec3 geometric = surface.geometric_normal * side;
+    return {off_surface(surface.position, geometric, scale_),
+            shading_normal * side,
+            geometric,
+            throughput,
+            pixel,
+            stream};
+  }
+
+  static void set_ray(RayPacket& rays, int i, const Vec3& origin, const Vec3& direction) {
+    rays.origin_x[i] = origin.x;
+    rays.origin_y[i] = origin.y;
+    rays.origin_z[i] = origin.z;
+    rays.direction_x[i] = direction.x;
+    rays.direction_y[i] = direction.y;
+    rays.direction_z[i] = direction.z;
+    rays.far[i] = kInfinity;
+    rays.mask[i] = ~0u;
+    rays.id[i] = static_cast<std::uint32_t>(i);
+  }
+
+  /// Up to sixteen points against all lights, into their pixels.
+  void gather_at(std::span<const ShadingPoint> points, Image& image) {
+    if (points.empty()) return;
+    assert(points.size() <= kPacket);
+    ShadingPacket packet;
+    for (std::size_t i = 0; i < kPacket; ++i) {
+      const ShadingPoint& p = points[std::min(i, points.size() - 1)];
+      packet.x[i] = p.position.x;
+      packet.y[i] = p.position.y;
+      packet.z[i] = p.position.z;
+      packet.shading_x[i] = p.shading_normal.x;
+      packet.shading_y[i] = p.shading_normal.y;
+      packet.shading_z[i] = p.shading_normal.z;
+      packet.geometric_x[i] = p.geometric_normal.x;
+      packet.geometric_y[i] = p.geometric_normal.y;
+      packet.geometric_z[i] = p.geometric_normal.z;
+      packet.active.lane[i] = i < points.size() ? -1 : 0;
+    }
+    IrradiancePacket irradiance;
+    counts_.shadow_rays +=
+        gather_irradiance(lights_, packet, in_.tracer, bound_, options_.shadow_rays, irradiance);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Rgb e(irradiance.r[i], irradiance.g[i], irradiance.b[i]);
+      image.pixels[points[i].pixel] += points[i].throughput * e * kInvPi;
+    }
+    if (options_.compensate && bound_ < kInfinity) trace_residual(points, image);
+  }
+
+  /// One cosine-distributed ray from each point: what it hits sends (1 - bound/G)+ of its radiance,
+  /// which is just what min(G, bound) left out. [Kollig & Keller 2004, equation 6]
+  void trace_residual(std::span<const ShadingPoint> points, Image& image) {
+    RayPacket rays{};
+    LaneMask active{};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const ShadingPoint& p = points[i];
+      constexpr std::uint64_t kCompensationStream = 0x636f6d7000000000u;
+      const std::uint64_t key = hash(options_.seed ^ kCompensationStream, p.pixel, p.stream);
+      const Vec2 shift(to_unit_float(hash(key)), to_unit_float(hash(key + 1)));
+      const Vec3 local = square_to_cosine_hemisphere(r2(options_.pass, shift));
+      const Vec3 direction = Frame(p.shading_normal).to_world(local);
+      active.lane[i] = glm::dot(direction, p.geometric_normal) > 0.0f ? -1 : 0;
+      counts_.compensation_rays += active.lane[i] != 0 ? 1 : 0;
+      set_ray(rays, static_cast<int>(i), p.position, direction);
+      // Further than this the bound takes nothing.
+      rays.far[i] = 1.0f / std::sqrt(bound_);
+    }
+    Hit hits[kPacket];
+    in_.tracer.closest(active, rays, hits);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (active.lane[i] == 0 || !hits[i]) continue;
+      const ShadingPoint& p = points[i];
+      const Vec3 direction(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]);
+      const SurfacePoint surface = surface_at(in_.scene, in_.world, hits[i].triangle, hits[i].uv);
+      const float cos_at_hit = std::abs(glm::dot(surface.geometric_normal, direction));
+      const float cos_at_point = glm::dot(p.shading_normal, direction);
+      const float geometry_term = cos_at_point * cos_at_hit / (hits[i].distance * hits[i].distance);
+      if (!(geometry_term > bound_)) continue;
+      const Rgb weight = p.throughput * (1.0f - bound_ / geometry_term);
+      const bool front = glm::dot(surface.geometric_normal, direction) < 0.0f;
+      image.pixels[p.pixel] +=
+          weight * emission_at(in_.scene, in_.world, hits[i].triangle, hits[i].uv, front);
+      Rgb throughput = weight * surface.reflectance;
+      if (is_black(throughput)) continue;
+      const std::uint64_t key = hash(options_.seed ^ p.pixel, p.stream, options_.pass);
+      // In a crevice between bright walls the chain of close hits is long: roulette ends it.
+      constexpr std::uint32_t kSureDepth = 3;
+      if (p.depth >= kSureDepth) {
+        constexpr float kMostlyGoesOn = 0.9f;
+        const float goes_on = std::min(
+            kMostlyGoesOn, max_component(surface.reflectance) * (1.0f - bound_ / geometry_term));
+        if (to_unit_float(hash(key)) >= goes_on) continue;
+        throughput /= goes_on;
+      }
+      const auto stream = static_cast<std::uint32_t>(key >> 32);
+      // Light paths know no shading normals, so their lights' other ends must not either.
+      next_.push_back(shading_point(surface, front, surface.geometric_normal, throughput, p.pixel,
+                                    stream, p.depth + 1));
+    }
+  }
+
+  const GatherInput& in_;
+  const GatherLights& lights_;
+  const GatherOptions& options_;
+  float bound_;
+  float scale_;
+  Eye eye_;
+  GatherCounts& counts_;
+  std::vector<ShadingPoint> current_, next_;
+};
+
+}  // namespace
+
+Image gather(const GatherInput& input, const VirtualLights& lights, const GatherOptions& options,
+             GatherCounts& counts, const StopFlag& stop,
+             const std::function<void(std::size_t)>& tile_done) {
+  Image image(options.width, options.height);
+  const GatherLights ready(lights, input.world.coordinate_scale());
+  const float radius = input.world.bounds.radius();
+  const float bound = options.bound > 0.0f ? options.bound / (radius * radius) : kInfinity;
+  const int columns = (options.width + kTile - 1) / kTile;
+  const int rows = (options.height + kTile - 1) / kTile;
+  const auto tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  std::vector<GatherCounts> tile_counts(tiles);
+  parallel_for(tiles, 1, [&](std::size_t i) {
+    if (stop.load(std::memory_order_relaxed)) return;
+    const int x0 = static_cast<int>(i % static_cast<std::size_t>(columns)) * kTile;
+    const int y0 = static_cast<int>(i / static_cast<std::size_t>(columns)) * kTile;
+    TileGatherer(input, ready, options, bound, tile_counts[i]).run(x0, y0, image);
+    if (tile_done) {
+      tile_done(static_cast<std::size_t>(std::min(kTile, options.width - x0)) *
+                static_cast<std::size_t>(std::min(kTile, options.height - y0)));
+    }
+  });
+  for (const GatherCounts& c : tile_counts) {
+    counts.camera_rays += c.camera_rays;
+    counts.shadow_rays += c.shadow_rays;
+    counts.compensation_rays += c.compensation_rays;
+  }
+  return image;
+}
+
+}  // namespace lantern

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// A loaded scene to a picture: the only module that sees all the others. [Keller 1997]
+#pragma once
+
+#include "lantern/core/parallel.h"
+#include "lantern/gather/gather.h"
+#include "lantern/image/image.h"
+#include "lantern/lights/virtual_lights.h"
+#include "lantern/lights/walk.h"
+#include "lantern/pipeline/camera.h"
+#include "lantern/scene/scene.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lantern {
+
+/// How lights are made.
+struct LightOptions {
+  std::size_t paths = 256;
+  std::optional<float> reflectivity;  // none: the scene's mean
+  bool jitter = false;
+  PointSet points;
+};
+
+struct RenderOptions {
+  LightOptions lights;
+  const VirtualLights* given_lights = nullptr;  // these, in every pass, instead of a walk
+  CameraChoice camera;
+  int width = 512;
+  int height = 512;
+  int samples = 1;
+  std::size_t passes = 1;         // 0: until `seconds` or `stop` end it
+  std::optional<double> seconds;  // no pass starts that is not expected to end by then
+  float bound = 0.0f;
+  bool compensate = false;
+  ShadowRays shadow_rays = ShadowRays::kPackets;
+};
+
+struct RenderStatistics {
+  std::size_t lights = 0;  // of all passes together, like the counts below
+  std::size_t paths = 0;
+  std::size_t passes = 0;
+  float reflectivity = 0.0f;
+  GatherCounts rays;
+  double seconds_prepare = 0.0;  // world, tree, emitters
+  double seconds_lights = 0.0;
+  double seconds_gather = 0.0;
+};
+
+struct Rendered {
+  Image image;
+  RenderStatistics statistics;
+  std::vector<std::string> warnings;
+};
+
+struct Progress {
+  double share = 0.0;         // of the work, in [0, 1]
+  double seconds_left = 0.0;  // expected
+  std::size_t passes_done = 0;
+};
+/// Called from any thread, one call at a time.
+using ProgressReport = std::function<void(const Progress&)>;
+
+/// Throws Error if the scene has no triangles or no light. `seconds` counts from `elapsed` seconds
+/// before the call. Stopped in its first pass the picture is black where nothing was done yet;
+/// later passes count whole or not at all.
+Rendered render(const Scene& scene, const RenderOptions& options, const StopFlag& stop,
+                const ProgressReport& report = {}, double elapsed = 0.0);
+
+/// The lights of pass 0 alone. Warnings are appended.
+VirtualLights make_lights(const Scene& scene, const LightOptions& options,
+                          std::vector<std::string>& warnings);
+
+}  // namespace lantern
