@@ -80,6 +80,26 @@ TEST(Scrambling, CarriesPairsOfDigitsToAllPairsAlike) {
   }
 }
 
+// What makes it nested: behind unequal digits the same digit is permuted independently.
+TEST(Scrambling, PermutesADigitByTheDigitsBeforeIt) {
+  constexpr std::uint64_t kSeeds = 10'000;
+  for (const std::uint32_t base : {2u, 3u, 7u}) {
+    for (const int place : {2, 6}) {
+      const double scale = std::pow(base, place);
+      const auto digit = [&](std::uint64_t index, std::uint64_t seed) {
+        const double value = scrambled_radical_inverse(base, index, seed);
+        return static_cast<std::uint64_t>((value + 1e-12) * scale) % base;
+      };
+      std::vector<double> counts(base * base, 0.0);
+      for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+        ++counts[digit(0, seed) * base + digit(1, seed)];
+      }
+      EXPECT_GT(chi_square(counts, uniform(base * base), kSeeds).p_value, kSignificance)
+          << "base " << base << ", digit " << place;
+    }
+  }
+}
+
 TEST(Scrambling, IsIndependentBetweenDimensions) {
   constexpr std::uint64_t kSeeds = 16'384;
   constexpr std::size_t kBins = 16;

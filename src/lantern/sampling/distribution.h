@@ -20,7 +20,9 @@ class Distribution {
   struct Choice {
     std::size_t index = 0;
     float probability = 0.0f;
-    float rest = 0.0f;  // the given number, stretched to [0, 1) within the chosen index
+    // The given number, stretched to [0, 1) within the chosen index. Of the 24 bits of a float it
+    // keeps those that the choice did not use: log2(1 / probability) fewer.
+    float rest = 0.0f;
   };
   Choice choose(float u) const;  // u in [0, 1)
 

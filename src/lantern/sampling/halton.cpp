@@ -12,8 +12,8 @@
 namespace lantern {
 namespace {
 
-/// Bases below this dimension (2, 3, 5, 7) are well distributed without scrambling from the first
-/// few points on; a base b above them repeats the diagonal of its pair for its first b points.
+/// Below this dimension (bases 2, 3, 5, 7) a few points are well distributed as they are; two
+/// larger bases count up together along a diagonal for as many points as they are large.
 constexpr int kPlainDimensions = 4;
 
 /// Integers below it are exact in a double, so that one division of two of them rounds once and
