@@ -135,7 +135,7 @@ class TileGatherer {
       if (is_black(surface.reflectance)) continue;
       points[count++] =
           shading_point(surface, front, surface.shading_normal, share * surface.reflectance,
-                        pixels[i], static_cast<std::uint32_t>(sample));
+                        pixels[i], static_cast<std::uint32_t>(sample), 0);
     }
     gather_at(std::span(points, count), image);
   }
@@ -156,7 +156,8 @@ class TileGatherer {
             geometric,
             throughput,
             pixel,
-            stream};
+            stream,
+            depth};
   }
 
   static void set_ray(RayPacket& rays, int i, const Vec3& origin, const Vec3& direction) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace lantern {
 namespace {
@@ -31,8 +32,10 @@ Distribution2D make_sky_choice(const Texture& texture, double& mean_luminance_ti
                               static_cast<std::size_t>(texture.height));
   double sum = 0.0;
   for (int y = 0; y < texture.height; ++y) {
-    const double top = kPi * y / texture.height, bottom = kPi * (y + 1.0) / texture.height;
-    const double solid_angle = 2.0 * kPi / texture.width * (std::cos(top) - std::cos(bottom));
+    const double top = std::numbers::pi * y / texture.height;
+    const double bottom = std::numbers::pi * (y + 1.0) / texture.height;
+    const double solid_angle =
+        2.0 * std::numbers::pi / texture.width * (std::cos(top) - std::cos(bottom));
     for (int x = 0; x < texture.width; ++x) {
       double value = 0.0;
       for (int dy = -1; dy <= 1; ++dy) {

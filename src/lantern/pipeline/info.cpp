@@ -5,6 +5,7 @@
 #include "lantern/scene/surface.h"
 #include "lantern/scene/world.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <map>

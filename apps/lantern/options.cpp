@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "apps/lantern/options.h"
+
+#include "apps/lantern/commands.h"
+#include "apps/lantern/terminal.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <charconv>
+#include <stdexcept>
+
+namespace lantern::app {
+
+void SceneArguments::add_to(CLI::App& command) {
+  command
+      .add_option("scene", path,
+                  "Ogre .mesh.xml, .mesh or .scene, glTF/GLB, OBJ, or what assimp reads")
+      ->required();
+  command
+      .add_option("--materials", load.material_scripts,
+                  "Ogre material script beside those next to the scene (repeatable)")
+      ->allow_extra_args(false);
+  command.add_option("--unit", load.unit, "Metres per unit of the file")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      .add_option("--emitter", emitters,
+                  "PATTERN=R,G,B: materials whose name matches emit that radiance (repeatable)")
+      ->allow_extra_args(false);
+  command.add_option("--sky", sky, "R,G,B or a lat-long picture: radiance from all around");
+  command.add_option("--threads", threads, "Threads to use (0: all cores)")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command.add_flag("--quiet", quiet, "No progress and no warnings");
+}
+
+void SceneArguments::check() {
+  try {
+    for (const std::string& text : emitters) edits_.push_back(parse_emitter(text));
+  } catch (const std::invalid_argument& e) {
+    throw UsageError(std::string("--emitter: ") + e.what());
+  }
+}
+
+Loaded SceneArguments::load_scene_now() const {
+  Loaded loaded = load_scene(path, load);
+  for (const EmitterEdit& edit : edits_) apply(edit, loaded.scene);
+  if (!sky.empty()) set_sky(sky, loaded.scene);
+  if (!quiet) {
+    for (const std::string& warning : loaded.report.warnings) warn(warning);
+    for (const auto& [what, times] : loaded.report.unknown) {
+      warn(fmt::format("{}: unknown, ignored ({} times)", what, times));
+    }
+  }
+  return loaded;
+}
+
+void LightArguments::add_to(CLI::App& command) {
+  command.add_option("--lights", paths, "Light paths started in a pass")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
+  command
+      .add_option("--reflectivity", reflectivity,
+                  "Share of the paths that survives a bounce, in (0, 1), or auto: the scene's mean")
+      ->capture_default_str();
+  command.add_option("--sampler", sampler, "halton, scrambled (every dimension) or random")
+      ->check(CLI::IsMember({"halton", "scrambled", "random"}))
+      ->capture_default_str();
+  command.add_flag("--jitter", jitter, "Jitter each point within the spacing of its generation");
+  command.add_option("--seed", seed, "Another seed, another set of points")->capture_default_str();
+}
+
+LightOptions LightArguments::options(std::size_t default_paths) const {
+  LightOptions lights;
+  lights.paths = paths > 0 ? paths : default_paths;
+  lights.jitter = jitter;
+  lights.points.seed = seed;
+  lights.points.sampler = sampler == "random"      ? Sampler::kRandom
+                          : sampler == "scrambled" ? Sampler::kScrambled
+                                                   : Sampler::kHalton;
+  if (reflectivity != "auto") {
+    try {
+      const std::vector<float> value = parse_numbers(reflectivity);
+      if (value.size() != 1 || !(value[0] > 0.0f && value[0] < 1.0f)) {
+        throw std::invalid_argument("out of range");
+      }
+      lights.reflectivity = value[0];
+    } catch (const std::invalid_argument&) {
+      throw UsageError(
+          fmt::format("--reflectivity: '{}' is neither a number in (0, 1) nor auto", reflectivity));
+    }
+  }
+  return lights;
+}
+
+std::pair<int, int> parse_size(const std::string& text) {
+  // Beyond this a picture's floats alone would take 16 GiB.
+  constexpr int kLargest = 32768;
+  const char* end = text.data() + text.size();
+  int width = 0, height = 0;
+  const auto first = std::from_chars(text.data(), end, width);
+  if (first.ec == std::errc() && first.ptr != end && *first.ptr == 'x') {
+    const auto second = std::from_chars(first.ptr + 1, end, height);
+    if (second.ec == std::errc() && second.ptr == end && width > 0 && height > 0 &&
+        width <= kLargest && height <= kLargest) {
+      return {width, height};
+    }
+  }
+  throw UsageError(fmt::format("--size: '{}' is not WxH with both in 1 to {}", text, kLargest));
+}
+
+}  // namespace lantern::app

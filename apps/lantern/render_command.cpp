@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+#include "lantern/core/file.h"
+#include "lantern/core/version.h"
+#include "lantern/image/write.h"
+#include "lantern/lights/export.h"
+
+#include "apps/lantern/commands.h"
+#include "apps/lantern/options.h"
+#include "apps/lantern/terminal.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <sys/resource.h>
+
+namespace lantern::app {
+namespace {
+
+constexpr std::size_t kUsualPaths = 256;
+constexpr std::size_t kUsualPathsInTime = 32;  // small passes, so that the time is kept
+
+struct Arguments {
+  SceneArguments scene;
+  LightArguments lights;
+  std::string out;
+  std::string size = "512x512";
+  std::size_t passes = 0;  // 0: not given
+  double seconds = 0.0;    // 0: not given
+  int samples = 0;         // 0: not given
+  std::string method = "instant-radiosity";
+  std::string backend = "cpu";
+  std::string camera;
+  std::string look_at;
+  float fov = 0.0f;  // 0: not given
+  float bound = 100.0f;
+  bool compensate = false;
+  float exposure = 0.0f;
+  std::string tone = "plain";
+  std::string depth = "half";
+  std::string lights_from;
+  bool single_rays = false;
+  bool json = false;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::uint64_t peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  constexpr std::uint64_t kKibibyte = 1024;
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * kKibibyte;
+}
+
+CameraChoice camera_choice(const Arguments& arguments) {
+  CameraChoice choice;
+  choice.name = arguments.camera;
+  if (arguments.fov > 0.0f) choice.vertical_fov = glm::radians(arguments.fov);
+  if (arguments.look_at.empty()) return choice;
+  try {
+    const std::vector<float> v = parse_numbers(arguments.look_at);
+    if (v.size() != 6 && v.size() != 9) throw std::invalid_argument("needs 6 or 9 numbers");
+    choice.eye = Vec3(v[0], v[1], v[2]);
+    choice.target = Vec3(v[3], v[4], v[5]);
+    if (v.size() == 9) choice.up = Vec3(v[6], v[7], v[8]);
+  } catch (const std::invalid_argument& e) {
+    throw UsageError(std::string("--look-at: ") + e.what());
+  }
+  return choice;
+}
+
+RenderOptions render_options(const Arguments& arguments) {
+  RenderOptions options;
+  std::tie(options.width, options.height) = parse_size(arguments.size);
+  const bool in_time = arguments.seconds > 0.0;
+  options.lights = arguments.lights.options(in_time ? kUsualPathsInTime : kUsualPaths);
+  options.camera = camera_choice(arguments);
+  options.passes = arguments.passes > 0 ? arguments.passes : in_time ? 0 : 1;
+  if (in_time) options.seconds = arguments.seconds;
+  // Several passes have a sample each; a single one must smooth its edges by itself.
+  constexpr int kSamplesOfSinglePass = 4;
+  options.samples = arguments.samples > 0 ? arguments.samples
+                    : options.passes == 1 ? kSamplesOfSinglePass
+                                          : 1;
+  options.bound = arguments.bound;
+  options.compensate = arguments.compensate;
+  options.shadow_rays = arguments.single_rays ? ShadowRays::kSingle : ShadowRays::kPackets;
+  return options;
+}
+
+Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
+                     const RenderStatistics& statistics) {
+  return {{"software", std::string("lantern ") + kVersion},
+          {"scene", arguments.scene.path.filename().string()},
+          {"method", arguments.method},
+          {"lights", std::to_string(options.lights.paths)},
+          {"reflectivity", fmt::format("{}", statistics.reflectivity)},
+          {"passes", std::to_string(statistics.passes)},
+          {"samples", std::to_string(options.samples)},
+          {"bound", fmt::format("{}", options.bound)},
+          {"compensate", options.compensate ? "yes" : "no"},
+          {"sampler", arguments.lights.sampler},
+          {"jitter", arguments.lights.jitter ? "yes" : "no"},
+          {"seed", std::to_string(arguments.lights.seed)}};
+}
+
+void print_json(const Rendered& rendered, double seconds_load, double seconds_total) {
+  const RenderStatistics& s = rendered.statistics;
+  const nlohmann::json out = {{"lights", s.lights},
+                              {"paths", s.paths},
+                              {"passes", s.passes},
+                              {"reflectivity", s.reflectivity},
+                              {"camera_rays", s.rays.camera_rays},
+                              {"shadow_rays", s.rays.shadow_rays},
+                              {"compensation_rays", s.rays.compensation_rays},
+                              {"seconds_load", seconds_load},
+                              {"seconds_prepare", s.seconds_prepare},
+                              {"seconds_lights", s.seconds_lights},
+                              {"seconds_gather", s.seconds_gather},
+                              {"seconds_total", seconds_total},
+                              {"peak_bytes", peak_bytes()},
+                              {"warnings", rendered.warnings}};
+  fmt::print("{}\n", out.dump());
+}
+
+void refuse_what_comes_later(const Arguments& arguments) {
+  if (arguments.method != "instant-radiosity") {
+    throw UsageError(fmt::format("--method {} is not available in this version", arguments.method));
+  }
+  if (arguments.backend != "cpu") {
+    throw UsageError(
+        fmt::format("--backend {} is not available in this version", arguments.backend));
+  }
+}
+
+void run(Arguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  refuse_what_comes_later(arguments);
+  arguments.scene.check();
+  RenderOptions options = render_options(arguments);
+  require_image_format(arguments.out);
+  require_writable(arguments.out);
+  ThreadScope threads(arguments.scene.threads);
+  threads.run([&] {
+    const StopFlag& stop = stop_on_interrupt();
+    std::optional<VirtualLights> given;
+    if (!arguments.lights_from.empty()) {
+      given = read_lights(arguments.lights_from);
+      options.given_lights = &*given;
+    }
+    const Loaded loaded = arguments.scene.load_scene_now();
+    const double seconds_load = seconds_since(start);
+
+    Rendered rendered;
+    {
+      ProgressBar bar(arguments.scene.quiet);
+      rendered = render(
+          loaded.scene, options, stop, [&](const Progress& p) { bar.show(p); }, seconds_load);
+    }
+    if (!arguments.scene.quiet) {
+      for (const std::string& warning : rendered.warnings) warn(warning);
+      if (stop.load()) warn(fmt::format("stopped early; {} has what was done", arguments.out));
+    }
+    WriteOptions write_with;
+    write_with.exr_depth = arguments.depth == "float" ? ExrDepth::kFloat : ExrDepth::kHalf;
+    write_with.tone.exposure = arguments.exposure;
+    write_with.tone.curve = arguments.tone == "filmic" ? ToneCurve::kFilmic : ToneCurve::kPlain;
+    write_with.metadata = metadata_of(arguments, options, rendered.statistics);
+    write_image(arguments.out, rendered.image, write_with);
+    if (arguments.json) print_json(rendered, seconds_load, seconds_since(start));
+  });
+}
+
+}  // namespace
+
+void add_render(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  Arguments& a = *arguments;
+  CLI::App* command = app.add_subcommand("render", "Turn a scene into a picture");
+  a.scene.add_to(*command);
+  a.lights.add_to(*command);
+  command->add_option("-o,--output", a.out, "OUT.exr, OUT.png, OUT.hdr or OUT.pfm")->required();
+  command->add_option("--size", a.size, "WxH in pixels")->capture_default_str();
+  command->add_option("--passes", a.passes, "Passes, each with lights of its own (1)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--time", a.seconds, "Stop after so many seconds")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--samples", a.samples, "Samples per pixel and pass (4; with several passes 1)")
+      ->check(CLI::Range(1, 65536));
+  command->add_option("--method", a.method, "How the picture is made")
+      ->check(CLI::IsMember({"instant-radiosity", "path", "radiosity-matrix", "radiosity-hemicube",
+                             "radiosity-progressive", "radiosity-gpu"}))
+      ->capture_default_str();
+  command->add_option("--backend", a.backend, "cpu or gl")
+      ->check(CLI::IsMember({"cpu", "gl"}))
+      ->capture_default_str();
+  command->add_option("--camera", a.camera, "Name of a camera of the scene");
+  command->add_option("--look-at", a.look_at, "ex,ey,ez,tx,ty,tz[,ux,uy,uz]: eye, target, up");
+  command->add_option("--fov", a.fov, "Vertical field of view in degrees")
+      ->check(CLI::Range(0.01f, 179.0f));
+  command
+      ->add_option("--bound", a.bound, "Bound on the geometry term, relative to the scene (0: off)")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_flag("--compensate", a.compensate, "Give back what the bound takes, by tracing");
+  command->add_option("--exposure", a.exposure, "Stops, for PNG")
+      ->check(CLI::Range(-100.0f, 100.0f));
+  command->add_option("--tone", a.tone, "plain or filmic, for PNG")
+      ->check(CLI::IsMember({"plain", "filmic"}))
+      ->capture_default_str();
+  command->add_option("--depth", a.depth, "half or float, for EXR")
+      ->check(CLI::IsMember({"half", "float"}))
+      ->capture_default_str();
+  command->add_option("--lights-from", a.lights_from, "Lights of a JSON file instead of a walk");
+  command->add_flag("--single-rays", a.single_rays, "Shadow rays one by one, for checks");
+  command->add_flag("--json", a.json, "Statistics as one JSON object on standard output");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace lantern::app
