@@ -8,6 +8,7 @@
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/MemoryIOWrapper.h>
+#include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -226,13 +227,19 @@ class Conversion {
       ++report_.unknown["orthographic camera"];
       return;
     }
-    const float aspect = source.mAspect > 0.0f ? source.mAspect : 1.0f;
     Camera& camera = scene_.cameras.emplace_back();
     camera.name = to_text(source.mName);
     camera.eye = Vec3(to_world * Vec4(to_vec3(source.mPosition), 1.0f));
     camera.forward = glm::normalize(Mat3(to_world) * to_vec3(source.mLookAt));
     camera.up = glm::normalize(Mat3(to_world) * to_vec3(source.mUp));
-    camera.vertical_fov = 2.0f * std::atan(std::tan(0.5f * source.mHorizontalFOV) / aspect);
+    // assimp 5.2 finds no COLLADA optics and leaves 0.8 degrees, by its default taken for degrees.
+    constexpr float kNarrowest = 0.015f;
+    if (source.mHorizontalFOV < kNarrowest) {
+      report_.warn(fmt::format("camera '{}': its field of view was not read", camera.name));
+    } else {
+      const float aspect = source.mAspect > 0.0f ? source.mAspect : 1.0f;
+      camera.vertical_fov = 2.0f * std::atan(std::tan(0.5f * source.mHorizontalFOV) / aspect);
+    }
   }
 
   void add_light(const aiLight& source, const Mat4& to_world) {
@@ -286,6 +293,7 @@ Loaded load_assimp(const std::filesystem::path& path, const LoadOptions&) {
   try {
     Assimp::Importer importer;
     importer.SetIOHandler(new ReadOnlyFiles);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     if (!importer.IsExtensionSupported(extension(path))) {
       fail(place,
            "its format is unknown; Ogre's .mesh.xml, .mesh and .scene are read, glTF, OBJ and "

@@ -5,6 +5,7 @@
 #include "lantern/core/file.h"
 #include "lantern/load/assimp_scene.h"
 #include "lantern/load/gltf_scene.h"
+#include "lantern/load/ogre_xml.h"
 #include "lantern/scene/validate.h"
 
 #include <algorithm>
@@ -15,6 +16,7 @@ namespace {
 
 Loaded load_by_name(const std::filesystem::path& path, const LoadOptions& options) {
   const std::string last = extension(path);
+  if (last == ".xml") return load_ogre_xml(path, options);
   if (last == ".gltf" || last == ".glb") return load_gltf(path, options);
   return load_assimp(path, options);
 }
