@@ -30,12 +30,15 @@ void check_size(std::int64_t width, std::int64_t height, const std::string& name
 
 bool starts_with(View bytes, std::string_view magic);
 bool is_exr(View bytes);
+bool is_jpeg(View bytes);
 bool is_png(View bytes);
 bool is_pfm(View bytes);
 
 Raster decode_exr(View bytes, const std::string& name);
+Raster decode_jpeg(View bytes, const std::string& name);
 Raster decode_pfm(View bytes, const std::string& name);
-/// PNG, JPEG, TGA, BMP and Radiance HDR.
+Raster decode_png(View bytes, const std::string& name);
+/// TGA, BMP and Radiance HDR.
 Raster decode_stb(View bytes, const std::string& name);
 
 /// Empty for a picture of another program or of a kind that keeps none.

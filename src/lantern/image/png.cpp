@@ -135,10 +135,33 @@ bool write_all(Writer& writer, const Image& image, const Tone& tone, Texts& text
   return true;
 }
 
-bool read_texts(Reader& reader, View& bytes) {
+/// `rest` is behind the header afterwards.
+bool read_header(Reader& reader, View& rest) {
+  // Compressed texts of a picture may unfold to this number of chunks of 8 MB at most.
+  constexpr png_uint_32 kMostTexts = 128;
   if (setjmp(png_jmpbuf(reader.png))) return false;
-  png_set_read_fn(reader.png, &bytes, take);
+  png_set_chunk_cache_max(reader.png, kMostTexts);
+  png_set_read_fn(reader.png, &rest, take);
   png_read_info(reader.png, reader.info);
+  return true;
+}
+
+/// Whatever the file stores, as 4 bytes a pixel.
+bool read_rows(Reader& reader, std::size_t width, std::size_t height, std::uint8_t* texels) {
+  png_structp png = reader.png;
+  constexpr png_uint_32 kOpaque = 255;
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_set_expand(png);
+  png_set_scale_16(png);
+  png_set_gray_to_rgb(png);
+  png_set_add_alpha(png, kOpaque, PNG_FILLER_AFTER);
+  const int passes = png_set_interlace_handling(png);
+  png_read_update_info(png, reader.info);
+  if (png_get_rowbytes(png, reader.info) != 4 * width) png_error(png, "unknown kind of pixels");
+  for (int pass = 0; pass < passes; ++pass) {
+    for (std::size_t y = 0; y < height; ++y) png_read_row(png, texels + 4 * width * y, nullptr);
+  }
+  png_read_end(png, nullptr);
   return true;
 }
 
@@ -146,9 +169,30 @@ bool read_texts(Reader& reader, View& bytes) {
 
 bool is_png(View bytes) { return starts_with(bytes, "\x89PNG\r\n\x1a\n"); }
 
+Raster decode_png(View bytes, const std::string& name) {
+  Reader reader;
+  View rest = bytes;
+  if (!read_header(reader, rest)) fail({name}, "broken PNG: {}", reader.problem.text);
+  const std::size_t width = png_get_image_width(reader.png, reader.info);
+  const std::size_t height = png_get_image_height(reader.png, reader.info);
+  check_size(static_cast<std::int64_t>(width), static_cast<std::int64_t>(height), name);
+  constexpr std::size_t kDeflateLimit = 1032;  // 258 bytes take 2 bits at least
+  if (png_get_rowbytes(reader.png, reader.info) * height > bytes.size() * kDeflateLimit) {
+    fail({name}, "a PNG of {} bytes cannot hold a picture of {}x{}", bytes.size(), width, height);
+  }
+  Raster raster{static_cast<int>(width),
+                static_cast<int>(height),
+                std::vector<std::uint8_t>(4 * width * height),
+                {}};
+  if (!read_rows(reader, width, height, raster.srgb8.data())) {
+    fail({name}, "broken PNG: {}", reader.problem.text);
+  }
+  return raster;
+}
+
 Metadata png_metadata(View bytes, const std::string& name) {
   Reader reader;
-  if (!read_texts(reader, bytes)) fail({name}, "broken PNG: {}", reader.problem.text);
+  if (!read_header(reader, bytes)) fail({name}, "broken PNG: {}", reader.problem.text);
   png_textp texts = nullptr;
   int count = 0;
   png_get_text(reader.png, reader.info, &texts, &count);

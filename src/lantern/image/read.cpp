@@ -36,6 +36,8 @@ Metadata decode_metadata(View bytes, const std::string& name) {
 Raster decode_raster(std::span<const std::byte> bytes, const std::string& name) try {
   if (bytes.empty()) fail({name}, "the file is empty");
   if (codec::is_exr(bytes)) return codec::decode_exr(bytes, name);
+  if (codec::is_jpeg(bytes)) return codec::decode_jpeg(bytes, name);
+  if (codec::is_png(bytes)) return codec::decode_png(bytes, name);
   if (codec::is_pfm(bytes)) return codec::decode_pfm(bytes, name);
   return codec::decode_stb(bytes, name);
 } catch (const std::bad_alloc&) {

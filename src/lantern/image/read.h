@@ -27,7 +27,8 @@ struct Raster {
 
 /// EXR, HDR, PFM, PNG, JPEG, TGA, BMP; the content decides, not the name. `name` is for messages.
 /// EXR: one flat part, scan lines or tiles (the finest level), channels R G B or Y, A optional; the
-/// picture is the data window. PNG of 16 bits is rounded down to 8. The scale of a PFM is not
+/// picture is the data window. PNG of 16 bits is rounded to 8. JPEG: not CMYK,
+/// not arithmetic coding. The scale of a PFM is not
 /// applied; EXPOSURE of an HDR is undone, so that radiance comes out.
 Raster decode_raster(std::span<const std::byte> bytes, const std::string& name);
 

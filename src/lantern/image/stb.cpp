@@ -16,7 +16,7 @@ namespace lantern::codec {
 namespace {
 
 /// Memory of one decoding, freed with it, so that an exception may leave stb_image. All of it is
-/// zero at first: a JPEG need not cover its picture.
+/// zero at first, so that no file can show what was there before.
 class Arena {
  public:
   explicit Arena(std::size_t limit) : left_(limit) { current_ = this; }
@@ -75,8 +75,7 @@ struct Broken {
 
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
-#define STBI_ONLY_JPEG
-#define STBI_ONLY_PNG
+#define STBI_NO_ZLIB
 #define STBI_ONLY_TGA
 #define STBI_ONLY_BMP
 #define STBI_ONLY_HDR
@@ -138,9 +137,7 @@ struct Kind {
 
 /// TGA has no magic number: what is nothing else may be one.
 Kind kind_of(View bytes) {
-  if (is_png(bytes)) return {"PNG", 8 * 1032};  // one bit a pixel; deflate ends at 1032:1
-  // At least one bit for each block of 8x8, of which 2 cover 16 by subsampling.
-  if (starts_with(bytes, "\xff\xd8\xff")) return {"JPEG", 8 * 8 * 8 * 2};
+  if (is_png(bytes)) return {"PNG", 8 * 1032};      // one bit a pixel; deflate ends at 1032:1
   if (starts_with(bytes, "BM")) return {"BMP", 8};  // one bit a pixel
   if (starts_with(bytes, "#?RADIANCE\n") || starts_with(bytes, "#?RGBE\n")) {
     return {"HDR", 16};  // runs of 127 in 4 channels of 2 bytes
@@ -188,12 +185,11 @@ void read_size(View bytes, const Kind& kind, int& width, int& height, const std:
   }
 }
 
-/// What stb_image needs at most while it works: progressive JPEGs of four channels keep 12 bytes
-/// of coefficients and samples a pixel and 4 of result; PNG of 16 bits twice 8, and 12 of results.
-std::size_t working_memory(View bytes, int width, int height) {
-  constexpr std::size_t kBytesPerPixel = 32;
-  constexpr std::size_t kSlack = std::size_t{16} << 20;
-  return kSlack + 4 * bytes.size() +
+/// What stb_image needs at most while it works: 16 bytes a pixel of an HDR, and its mantissas.
+std::size_t working_memory(int width, int height) {
+  constexpr std::size_t kBytesPerPixel = 20;
+  constexpr std::size_t kSlack = std::size_t{1} << 20;  // palettes, rows
+  return kSlack +
          kBytesPerPixel * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
 }
 
@@ -204,10 +200,10 @@ Raster decode_stb(View bytes, const std::string& name) {
   try {
     Raster raster;
     {
-      Arena header_arena(working_memory(bytes, 0, 0));
+      Arena header_arena(working_memory(0, 0));
       read_size(bytes, kind, raster.width, raster.height, name);
     }
-    Arena arena(working_memory(bytes, raster.width, raster.height));
+    Arena arena(working_memory(raster.width, raster.height));
     Source source(bytes);
     const std::size_t values =
         4 * static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(raster.height);
