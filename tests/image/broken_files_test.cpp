@@ -163,6 +163,11 @@ TEST(BrokenFiles, ExrHeadersThatLie) {
   EXPECT_THAT(error_of(attribute), ::testing::HasSubstr("attribute of 2147483647 bytes"));
   EXPECT_THROW(codec::exr_metadata(attribute, "file"), Error);
 
+  // OpenEXR reads one byte all the same and would go on with the wrong one.
+  Bytes length = seed("half.exr");
+  put(length, behind(length, std::string_view("lineOrder\0lineOrder\0", 20)), {2});
+  EXPECT_THAT(error_of(length), ::testing::HasSubstr("attribute of type lineOrder has 2 bytes"));
+
   const auto flagged = [](unsigned flags) {
     Bytes bytes = seed("half.exr");
     put(bytes, 5, {flags});

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <memory>
 
 namespace lantern::codec {
 namespace {
@@ -80,40 +81,46 @@ std::uint32_t little_endian(View bytes, std::size_t at) {
   return value;
 }
 
-/// OpenEXR makes room for as much as an attribute claims before it reads it; so look at all of
-/// them first. An attribute is a name, a type, a size of 4 bytes and its value; an empty name ends.
-void check_attribute_sizes(View bytes, const std::string& name) {
+/// A text of the header; leaves `at` behind the zero that ends it.
+std::string take_text(View bytes, std::size_t& at, const std::string& name) {
+  const View rest = bytes.subspan(at);
+  const auto end = std::find(rest.begin(), rest.end(), std::byte{0});
+  if (end == rest.end()) fail({name}, "the header of the EXR is incomplete");
+  const auto length = static_cast<std::size_t>(end - rest.begin());
+  at += length + 1;
+  return {reinterpret_cast<const char*>(rest.data()), length};
+}
+
+/// OpenEXR makes room for as much as an attribute claims, wherever it believes that one starts; so
+/// read them here first and see that each is just as long as it says. An attribute is a name, a
+/// type, a size of 4 bytes and its value; an empty name ends the header.
+Imf::Header read_header(View bytes, const std::string& name) {
+  if (bytes.size() < kPreamble) fail({name}, "the header of the EXR is incomplete");
+  const int version = static_cast<int>(little_endian(bytes, 4));
+  if (Imf::isMultiPart(version)) fail({name}, "an EXR of several parts cannot be read");
+  if (Imf::isNonImage(version)) fail({name}, "a deep EXR cannot be read");
+
+  Imf::Header header;
   std::size_t at = kPreamble;
-  const auto skip_text = [&] {
-    const auto end =
-        std::find(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), std::byte{0});
-    if (end == bytes.end()) fail({name}, "the header of the EXR is incomplete");
-    const std::size_t start = at;
-    at = static_cast<std::size_t>(end - bytes.begin()) + 1;
-    return at - start - 1;
-  };
-  while (skip_text() > 0) {
-    skip_text();
+  for (auto key = take_text(bytes, at, name); !key.empty(); key = take_text(bytes, at, name)) {
+    const std::string type = take_text(bytes, at, name);
     if (bytes.size() - at < 4) fail({name}, "the header of the EXR is incomplete");
     const std::uint32_t size = little_endian(bytes, at);
     at += 4;
     if (size > bytes.size() - at) {
       fail({name, {}, {}, at}, "an EXR attribute of {} bytes does not fit into the file", size);
     }
+    if (Imf::Attribute::knownType(type.c_str())) {
+      const std::unique_ptr<Imf::Attribute> value(Imf::Attribute::newAttribute(type.c_str()));
+      MemoryInput input(bytes.subspan(at, size), name);
+      value->readValueFrom(input, static_cast<int>(size), version);
+      if (input.tellg() != size) {
+        fail({name, {}, {}, at}, "an EXR attribute of type {} has {} bytes", type, size);
+      }
+      header.insert(key, *value);
+    }
     at += size;
   }
-}
-
-Imf::Header read_header(View bytes, const std::string& name) {
-  if (bytes.size() < kPreamble) fail({name}, "the header of the EXR is incomplete");
-  int version = static_cast<int>(little_endian(bytes, 4));
-  if (Imf::isMultiPart(version)) fail({name}, "an EXR of several parts cannot be read");
-  if (Imf::isNonImage(version)) fail({name}, "a deep EXR cannot be read");
-  check_attribute_sizes(bytes, name);
-  MemoryInput input(bytes, name);
-  input.seekg(kPreamble);
-  Imf::Header header;
-  header.readFrom(input, version);
   header.sanityCheck(Imf::isTiled(version));
   if (Imf::isTiled(version) != header.hasTileDescription()) {
     fail({name}, "the EXR does not know whether it is tiled");
@@ -155,7 +162,7 @@ void check_proportion(const Imf::Header& header, const Extent& picture, View byt
   // DWA codes runs of zeros before deflating; 2^14 is above what a black picture reaches.
   constexpr std::uint64_t kLossless = 2048;
   constexpr std::uint64_t kDwa = 16384;
-  constexpr std::uint64_t kHarmless = std::uint64_t{64} << 20;  // bytes not worth refusing
+  constexpr std::uint64_t kHarmless = std::uint64_t{4} << 20;  // bytes not worth refusing
   constexpr std::uint64_t kLargestTileSide = 1 << 15;
 
   std::uint64_t pixel_bytes = 0;
