@@ -27,6 +27,13 @@ TEST_F(DispatchTest, XmlIsOgres) {
   }
 }
 
+TEST_F(DispatchTest, MeshAndSceneAreOgres) {
+  // Neither goes to assimp, which reads both formats in its own way.
+  EXPECT_NE(error_of("a.mesh", "hello"), "");
+  EXPECT_THAT(error_of("a.scene", "<scene formatVersion='1.0'></scene>"),
+              ::testing::HasSubstr("has no triangles"));
+}
+
 TEST_F(DispatchTest, UnknownFormatsAreOneError) {
   EXPECT_THAT(error_of("a.strange", "hello"),
               ::testing::HasSubstr("a.strange: its format is unknown"));

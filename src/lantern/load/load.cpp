@@ -4,7 +4,9 @@
 #include "lantern/core/error.h"
 #include "lantern/core/file.h"
 #include "lantern/load/assimp_scene.h"
+#include "lantern/load/dotscene.h"
 #include "lantern/load/gltf_scene.h"
+#include "lantern/load/ogre_binary.h"
 #include "lantern/load/ogre_xml.h"
 #include "lantern/scene/validate.h"
 
@@ -17,6 +19,8 @@ namespace {
 Loaded load_by_name(const std::filesystem::path& path, const LoadOptions& options) {
   const std::string last = extension(path);
   if (last == ".xml") return load_ogre_xml(path, options);
+  if (last == ".mesh") return load_ogre_binary(path, options);
+  if (last == ".scene") return load_dotscene(path, options);
   if (last == ".gltf" || last == ".glb") return load_gltf(path, options);
   return load_assimp(path, options);
 }
