@@ -128,6 +128,14 @@ TEST(BrokenFiles, ClaimsThatTheFileCannotHold) {
   put(jpeg, behind(jpeg, "\xff\xc0") + 3, {64, 0, 64, 0});
   EXPECT_THAT(error_of(jpeg), ::testing::HasSubstr("cannot hold a picture of 16384x16384"));
 
+  Bytes png = seed("rgb.png");
+  put(png, 16, {0, 0, 64, 0, 0, 0, 64, 0, 8, 2, 0, 0, 0, 0x26, 0xaa, 0x87, 0xd3});  // with its CRC
+  EXPECT_THAT(error_of(png), ::testing::HasSubstr("cannot hold a picture of 16384x16384"));
+
+  Bytes chunk = seed("rgb.png");
+  put(chunk, behind(chunk, "tEXt") - 8, {0x40, 0, 0, 0});
+  EXPECT_THAT(error_of(chunk), ::testing::HasSubstr("a PNG chunk of 1073741824 bytes"));
+
   Bytes exr = seed("half.exr");
   put(exr, behind(exr, std::string_view("dataWindow\0box2i\0\x10\0\0\0", 21)) + 8,
       {0xff, 0x3f, 0, 0, 0xff, 0x3f, 0, 0});

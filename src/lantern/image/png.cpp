@@ -135,11 +135,30 @@ bool write_all(Writer& writer, const Image& image, const Tone& tone, Texts& text
   return true;
 }
 
+/// libpng makes room for a chunk as long as it claims to be. A chunk is its length, a name of 4
+/// bytes, the content and 4 bytes of check sum.
+void check_chunk_lengths(View bytes, const std::string& name) {
+  constexpr std::size_t kSignature = 8;
+  constexpr std::size_t kFrame = 12;
+  for (std::size_t at = kSignature; at < bytes.size();) {
+    const View rest = bytes.subspan(at);
+    if (rest.size() < kFrame) return;  // libpng finds that the file ends early, or does not care
+    const std::uint32_t length = png_get_uint_32(reinterpret_cast<png_const_bytep>(rest.data()));
+    if (length > rest.size() - kFrame) {
+      fail({name, {}, {}, at}, "a PNG chunk of {} bytes does not fit into the file", length);
+    }
+    if (std::memcmp(rest.data() + 4, "IEND", 4) == 0) return;
+    at += kFrame + length;
+  }
+}
+
 /// `rest` is behind the header afterwards.
 bool read_header(Reader& reader, View& rest) {
-  // Compressed texts of a picture may unfold to this number of chunks of 8 MB at most.
+  // Compressed texts may unfold to this many bytes in each of this many chunks.
+  constexpr png_alloc_size_t kLongestText = png_alloc_size_t{8} << 20;
   constexpr png_uint_32 kMostTexts = 128;
   if (setjmp(png_jmpbuf(reader.png))) return false;
+  png_set_chunk_malloc_max(reader.png, kLongestText);
   png_set_chunk_cache_max(reader.png, kMostTexts);
   png_set_read_fn(reader.png, &rest, take);
   png_read_info(reader.png, reader.info);
@@ -170,6 +189,7 @@ bool read_rows(Reader& reader, std::size_t width, std::size_t height, std::uint8
 bool is_png(View bytes) { return starts_with(bytes, "\x89PNG\r\n\x1a\n"); }
 
 Raster decode_png(View bytes, const std::string& name) {
+  check_chunk_lengths(bytes, name);
   Reader reader;
   View rest = bytes;
   if (!read_header(reader, rest)) fail({name}, "broken PNG: {}", reader.problem.text);
@@ -191,6 +211,7 @@ Raster decode_png(View bytes, const std::string& name) {
 }
 
 Metadata png_metadata(View bytes, const std::string& name) {
+  check_chunk_lengths(bytes, name);
   Reader reader;
   if (!read_header(reader, bytes)) fail({name}, "broken PNG: {}", reader.problem.text);
   png_textp texts = nullptr;
