@@ -6,10 +6,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <memory>
-#include <optional>
 #include <unordered_map>
 
 namespace lantern::codec {
@@ -99,7 +100,7 @@ namespace {
 /// Feeds stb_image and throws where it would read past the end.
 struct Input {
   View rest;
-  const void* buffer;  // stb_image's own, which it fills ahead of what it needs
+  const void* buffer;  // stb_image's own: only there may a read fall short
 
   static int read(void* user, char* to, int size) {
     auto& input = *static_cast<Input*>(user);
@@ -137,7 +138,6 @@ struct Kind {
 
 /// TGA has no magic number: what is nothing else may be one.
 Kind kind_of(View bytes) {
-  if (is_png(bytes)) return {"PNG", 8 * 1032};      // one bit a pixel; deflate ends at 1032:1
   if (starts_with(bytes, "BM")) return {"BMP", 8};  // one bit a pixel
   if (starts_with(bytes, "#?RADIANCE\n") || starts_with(bytes, "#?RGBE\n")) {
     return {"HDR", 16};  // runs of 127 in 4 channels of 2 bytes

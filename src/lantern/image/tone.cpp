@@ -9,8 +9,7 @@ namespace {
 /// NaN goes to 0: every comparison with it is false.
 float clip(float value) { return value > 0.0f ? (value < 1.0f ? value : 1.0f) : 0.0f; }
 
-/// [Narkowicz 2015]. Beyond kWhite the fit rises no more than 0.034 above 1, and in infinity it
-/// would be no number.
+/// [Narkowicz 2015]. Beyond kWhite the fit stays above 1, and at infinity it would be no number.
 float filmic(float x) {
   constexpr float kWhite = 100.0f;
   if (!(x > 0.0f)) return 0.0f;
