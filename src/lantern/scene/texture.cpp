@@ -37,10 +37,12 @@ int wrap(int i, int size, Wrap mode) {
 }
 
 /// Position in texels, kept where int arithmetic is exact however wild the coordinate is.
-float texel_position(float coordinate, int size) {
+float texel_position(float coordinate, int size, Wrap mode) {
   if (!std::isfinite(coordinate)) return -0.5f;
-  constexpr float kPeriod = 4096.0f;  // even, so that it is a whole number of repeats and mirrors
-  return std::fmod(coordinate, kPeriod) * static_cast<float>(size) - 0.5f;
+  constexpr float kPeriod = 2.0f;  // a whole number of repeats and of mirrors
+  const float inside =
+      mode == Wrap::kClamp ? std::clamp(coordinate, 0.0f, 1.0f) : std::fmod(coordinate, kPeriod);
+  return inside * static_cast<float>(size) - 0.5f;
 }
 
 }  // namespace
@@ -61,8 +63,8 @@ Vec4 texel(const Texture& texture, int x, int y) {
 }
 
 Vec4 sample(const Texture& texture, Vec2 uv) {
-  const float x = texel_position(uv.x, texture.width);
-  const float y = texel_position(uv.y, texture.height);
+  const float x = texel_position(uv.x, texture.width, texture.wrap_u);
+  const float y = texel_position(uv.y, texture.height, texture.wrap_v);
   const float x_floor = std::floor(x), y_floor = std::floor(y);
   const int x0 = wrap(static_cast<int>(x_floor), texture.width, texture.wrap_u);
   const int x1 = wrap(static_cast<int>(x_floor) + 1, texture.width, texture.wrap_u);

@@ -2,6 +2,9 @@
 #include "lantern/scene/validate.h"
 
 #include "lantern/core/error.h"
+#include "lantern/scene/world.h"
+
+#include <glm/gtc/matrix_access.hpp>
 
 #include <algorithm>
 
@@ -42,7 +45,8 @@ std::string named(const char* kind, const std::string& name, std::size_t i) {
   return name.empty() ? fmt::format("{} {}", kind, i) : fmt::format("{} '{}'", kind, name);
 }
 
-void check_texture(const Texture& texture, std::size_t i, Findings& findings) {
+void check_texture(Texture& texture, std::size_t i, Findings& findings,
+                   std::vector<std::string>& warnings) {
   const std::string who = named("texture", texture.name, i);
   if (texture.width <= 0 || texture.height <= 0) {
     findings.add("{} has no texels", who);
@@ -55,6 +59,16 @@ void check_texture(const Texture& texture, std::size_t i, Findings& findings) {
     findings.add("{} is {}x{} but does not have that many texels", who, texture.width,
                  texture.height);
   }
+  std::size_t bad = 0;
+  for (float& value : texture.linear) {
+    if (value >= 0.0f && std::isfinite(value)) continue;
+    value = 0.0f;
+    ++bad;
+  }
+  if (bad > 0) {
+    warnings.push_back(
+        fmt::format("{}: {} values are negative or not finite; taken as 0", who, bad));
+  }
 }
 
 void check_material(Material& material, std::size_t i, std::size_t textures, Findings& findings,
@@ -63,8 +77,9 @@ void check_material(Material& material, std::size_t i, std::size_t textures, Fin
   for (const auto& id : {material.reflectance_texture, material.emission_texture}) {
     if (id && index(*id) >= textures) findings.add("{} names a texture that is not there", who);
   }
-  if (!lantern::is_finite(material.reflectance) || !std::isfinite(material.opacity)) {
-    findings.add("{} has a reflectance that is not a finite number", who);
+  if (!lantern::is_finite(material.reflectance) || !std::isfinite(material.opacity) ||
+      !std::isfinite(material.alpha_cutoff.value_or(0.0f))) {
+    findings.add("{} has a reflectance or opacity that is not a finite number", who);
   }
   const Rgb clamped = glm::clamp(material.reflectance, 0.0f, 1.0f);
   if (clamped != material.reflectance) {
@@ -72,11 +87,14 @@ void check_material(Material& material, std::size_t i, std::size_t textures, Fin
     material.reflectance = clamped;
   }
   material.opacity = std::clamp(material.opacity, 0.0f, 1.0f);
+  bool dark = false;
   for (int c = 0; c < 3; ++c) {
-    if (!(material.emission[c] >= 0.0f) || !std::isfinite(material.emission[c])) {
-      warnings.push_back(fmt::format("{}: emission is negative or not finite; taken as 0", who));
-      material.emission[c] = 0.0f;
-    }
+    if (material.emission[c] >= 0.0f && std::isfinite(material.emission[c])) continue;
+    material.emission[c] = 0.0f;
+    dark = true;
+  }
+  if (dark) {
+    warnings.push_back(fmt::format("{}: emission is negative or not finite; taken as 0", who));
   }
 }
 
@@ -106,17 +124,19 @@ void check_mesh(Mesh& mesh, std::size_t i, std::size_t materials, Findings& find
   }
   const std::size_t flat = std::erase_if(mesh.triangles, [&](const uvec3& t) {
     const Vec3 a = mesh.positions[t.x];
-    const Vec3 normal = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
-    // Without a length that float can hold there is no normal either.
-    return !(glm::dot(normal, normal) > std::numeric_limits<float>::min());
+    return !has_area(glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a));
   });
-  if (flat > 0)
+  if (flat > 0) {
     warnings.push_back(fmt::format("{}: {} triangles without area left out", who, flat));
+  }
   for (Vec3& n : mesh.normals) {
     if (!lantern::is_finite(n)) n = Vec3(0.0f);
   }
   for (Vec2& t : mesh.texcoords) {
     if (!std::isfinite(t.x) || !std::isfinite(t.y)) t = Vec2(0.0f);
+  }
+  for (Vec4& c : mesh.colours) {
+    if (!lantern::is_finite(Vec3(c)) || !std::isfinite(c.a)) c = Vec4(0.0f, 0.0f, 0.0f, 1.0f);
   }
 }
 
@@ -143,6 +163,12 @@ void check_light(PunctualLight& light, std::size_t i, Findings& findings) {
       !(glm::dot(light.direction, light.direction) > 0.0f)) {
     findings.add("{} has no finite place and direction", who);
   }
+  if (!std::isfinite(light.inner_angle) || !std::isfinite(light.outer_angle)) {
+    findings.add("{} has a cone that is not a finite angle", who);
+    return;
+  }
+  light.outer_angle = std::clamp(light.outer_angle, 0.0f, kPi);
+  light.inner_angle = std::clamp(light.inner_angle, 0.0f, light.outer_angle);
 }
 
 }  // namespace
@@ -151,7 +177,7 @@ std::vector<std::string> validate(Scene& scene, const std::string& file) {
   Findings findings;
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
-    check_texture(scene.textures[i], i, findings);
+    check_texture(scene.textures[i], i, findings, warnings);
   }
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     check_material(scene.materials[i], i, scene.textures.size(), findings, warnings);
@@ -166,6 +192,8 @@ std::vector<std::string> validate(Scene& scene, const std::string& file) {
       findings.add("instance {} names a mesh or material that is not there", i);
     } else if (!is_finite(instance.transform)) {
       findings.add("instance {} has a transform that is not finite", i);
+    } else if (glm::row(instance.transform, 3) != Vec4(0.0f, 0.0f, 0.0f, 1.0f)) {
+      findings.add("instance {} has a transform that is not affine", i);
     }
   }
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {

@@ -51,6 +51,7 @@ World make_world(const Scene& scene) {
   if (has_texcoords) world.texcoords.reserve(vertices);
   if (has_colours) world.colours.reserve(vertices);
 
+  bool finite = true;
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[index(instance.mesh)];
     const std::size_t count = mesh.positions.size();
@@ -65,7 +66,7 @@ World make_world(const Scene& scene) {
     for (const Vec3& p : mesh.positions) {
       const Vec3 q = identity ? p : Vec3(instance.transform * Vec4(p, 1.0f));
       world.positions.push_back(q);
-      world.bounds.add(q);
+      finite &= is_finite(q);
     }
     if (has_normals) {
       append(world.normals, mesh.normals, count, Vec3(0.0f));
@@ -83,16 +84,17 @@ World make_world(const Scene& scene) {
       world.triangles.push_back(t + first);
       world.materials.push_back(material);
       // A transform can flatten what had an area, and nothing can be done with what has no normal.
-      const Vec3 area = world.area_vector(static_cast<std::uint32_t>(world.triangles.size() - 1));
-      if (!(glm::dot(area, area) > std::numeric_limits<float>::min())) {
+      if (!has_area(world.area_vector(static_cast<std::uint32_t>(world.triangles.size() - 1)))) {
         world.triangles.pop_back();
         world.materials.pop_back();
+        continue;
+      }
+      for (int corner = 0; corner < 3; ++corner) {
+        world.bounds.add(world.positions[world.triangles.back()[corner]]);
       }
     }
   }
-  if (!world.bounds.empty() && !(is_finite(world.bounds.low) && is_finite(world.bounds.high))) {
-    throw Error("an instance's transform takes the scene out of the range of numbers");
-  }
+  if (!finite) throw Error("an instance's transform takes the scene out of the range of numbers");
   return world;
 }
 

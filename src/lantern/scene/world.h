@@ -11,6 +11,12 @@
 
 namespace lantern {
 
+/// Whether a triangle with this area vector has a length and a direction that float can hold.
+inline bool has_area(const Vec3& area_vector) {
+  const float square = glm::dot(area_vector, area_vector);
+  return square > std::numeric_limits<float>::min() && std::isfinite(square);
+}
+
 struct World {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;    // empty or per vertex; zero: the triangle's own
@@ -18,7 +24,7 @@ struct World {
   std::vector<Vec4> colours;    // empty or per vertex
   std::vector<uvec3> triangles;
   std::vector<MaterialId> materials;  // per triangle
-  Bounds bounds;
+  Bounds bounds;                      // of the triangles
 
   std::size_t size() const { return triangles.size(); }
 
