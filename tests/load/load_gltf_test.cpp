@@ -314,54 +314,51 @@ void merge(Json& target, const Json& patch) {
   }
 }
 
-class GltfFaultTest : public LoadTest, public ::testing::WithParamInterface<Fault> {};
+const std::vector<Fault> kFaults = {
+    Fault{R"({"accessors": {"0": {"count": 4}}})", "accessors[0]: its 4 elements reach beyond"},
+    Fault{R"({"accessors": {"0": {"count": 9007199254740991}}})", "reach beyond"},
+    Fault{R"({"accessors": {"0": {"count": 1e300}}})", "'count' is no index or count"},
+    Fault{R"({"accessors": {"0": {"count": -1}}})", "'count' is no index or count"},
+    Fault{R"({"accessors": {"0": {"byteOffset": 4}}})", "reach beyond its bufferView"},
+    Fault{R"({"accessors": {"0": {"byteOffset": 9007199254740991}}})", "reach beyond"},
+    Fault{R"({"accessors": {"0": {"componentType": 5124}}})", "componentType is unknown"},
+    Fault{R"({"accessors": {"0": {"type": "MAT4"}}})", "type is not one"},
+    Fault{R"({"accessors": {"0": {"type": "VEC2"}}})", "too few components"},
+    Fault{R"({"accessors": {"0": {"bufferView": 7}}})", "there is no bufferViews[7]"},
+    Fault{R"({"accessors": {"0": 3}})", "accessors[0] is no object"},
+    Fault{R"({"accessors": {"1": {"componentType": 5126, "count": 1}}})", "no unsigned"},
+    Fault{R"({"bufferViews": {"0": {"byteLength": 99}}})", "beyond its buffer"},
+    Fault{R"({"bufferViews": {"0": {"byteStride": 2}}})", "overlap"},
+    Fault{R"({"bufferViews": {"0": {"byteStride": 4000000000}}})", "reach beyond"},
+    Fault{R"({"bufferViews": {"0": {"buffer": 1}}})", "there is no buffers[1]"},
+    Fault{R"({"buffers": {"0": {"byteLength": 99999}}})", "claims 99999 bytes"},
+    Fault{R"({"buffers": {"0": {"uri": "data:;base64,????"}}})", "not base64"},
+    Fault{R"({"buffers": {"0": {"uri": "data:,hello"}}})", "not base64"},
+    Fault{R"({"buffers": {"0": {"uri": "not-there.bin"}}})", "not-there.bin: no such file"},
+    Fault{R"({"buffers": {"0": {"uri": 5}}})", "'uri' is no text"},
+    Fault{R"({"nodes": {"0": {"children": [0]}}})", "nodes[0]: has two parents"},
+    Fault{R"({"nodes": {"0": {"children": [9]}}})", "there is no nodes[9]"},
+    Fault{R"({"nodes": {"0": {"mesh": 2}}})", "there is no meshes[2]"},
+    Fault{R"({"nodes": {"0": {"mesh": "x"}}})", "'mesh' is no index"},
+    Fault{R"({"nodes": {"0": {"matrix": [1, 2]}}})", "'matrix' is not 16 numbers"},
+    Fault{R"({"nodes": {"0": {"scale": [1, 2, null]}}})", "'scale' is not 3 numbers"},
+    Fault{R"({"nodes": {"0": {"scale": [1e300, 1, 1]}}})", "not finite"},
+    Fault{R"({"nodes": {"0": {"camera": 0}}})", "there is no cameras[0]"},
+    Fault{R"({"scene": 3})", "there is no scenes[3]"},
+    Fault{R"({"scenes": 3})", "'scenes' is no object"},
+    Fault{R"({"meshes": {"0": {"primitives": {"0": {"material": 0}}}}})", "no materials[0]"},
+    Fault{R"({"materials": [{"emissiveTexture": {"index": 0}}]})", "no textures[0]"},
+    Fault{R"({"materials": [{"emissiveFactor": "red"}]})", "materials[0]: 'emissiveFactor'"},
+    Fault{R"({"meshes": [{"primitives": []}]})", "has no triangles"},
+    Fault{R"({"nodes": [{}]})", "has no triangles"}};
 
-TEST_P(GltfFaultTest, EndsInOneLine) {
-  Gltf gltf;
-  Json document = Json::parse(gltf.text());
-  merge(document, Json::parse(GetParam().patch));
-  EXPECT_THAT(error_of("a.gltf", document.dump()), ::testing::HasSubstr(GetParam().message));
+TEST_F(GltfTest, FaultsEndInOneLine) {
+  for (const auto& [patch, message] : kFaults) {
+    Json document = Json::parse(Gltf().text());
+    merge(document, Json::parse(patch));
+    EXPECT_THAT(error_of("a.gltf", document.dump()), ::testing::HasSubstr(message)) << patch;
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    AllKinds, GltfFaultTest,
-    ::testing::Values(
-        Fault{R"({"accessors": {"0": {"count": 4}}})", "accessors[0]: its 4 elements reach beyond"},
-        Fault{R"({"accessors": {"0": {"count": 9007199254740991}}})", "reach beyond"},
-        Fault{R"({"accessors": {"0": {"count": 1e300}}})", "'count' is no index or count"},
-        Fault{R"({"accessors": {"0": {"count": -1}}})", "'count' is no index or count"},
-        Fault{R"({"accessors": {"0": {"byteOffset": 4}}})", "reach beyond its bufferView"},
-        Fault{R"({"accessors": {"0": {"byteOffset": 9007199254740991}}})", "reach beyond"},
-        Fault{R"({"accessors": {"0": {"componentType": 5124}}})", "componentType is unknown"},
-        Fault{R"({"accessors": {"0": {"type": "MAT4"}}})", "type is not one"},
-        Fault{R"({"accessors": {"0": {"type": "VEC2"}}})", "too few components"},
-        Fault{R"({"accessors": {"0": {"bufferView": 7}}})", "there is no bufferViews[7]"},
-        Fault{R"({"accessors": {"0": 3}})", "accessors[0] is no object"},
-        Fault{R"({"accessors": {"1": {"componentType": 5126, "count": 1}}})", "no unsigned"},
-        Fault{R"({"bufferViews": {"0": {"byteLength": 99}}})", "beyond its buffer"},
-        Fault{R"({"bufferViews": {"0": {"byteStride": 2}}})", "overlap"},
-        Fault{R"({"bufferViews": {"0": {"byteStride": 4000000000}}})", "reach beyond"},
-        Fault{R"({"bufferViews": {"0": {"buffer": 1}}})", "there is no buffers[1]"},
-        Fault{R"({"buffers": {"0": {"byteLength": 99999}}})", "claims 99999 bytes"},
-        Fault{R"({"buffers": {"0": {"uri": "data:;base64,????"}}})", "not base64"},
-        Fault{R"({"buffers": {"0": {"uri": "data:,hello"}}})", "not base64"},
-        Fault{R"({"buffers": {"0": {"uri": "not-there.bin"}}})", "not-there.bin: no such file"},
-        Fault{R"({"buffers": {"0": {"uri": 5}}})", "'uri' is no text"},
-        Fault{R"({"nodes": {"0": {"children": [0]}}})", "nodes[0]: has two parents"},
-        Fault{R"({"nodes": {"0": {"children": [9]}}})", "there is no nodes[9]"},
-        Fault{R"({"nodes": {"0": {"mesh": 2}}})", "there is no meshes[2]"},
-        Fault{R"({"nodes": {"0": {"mesh": "x"}}})", "'mesh' is no index"},
-        Fault{R"({"nodes": {"0": {"matrix": [1, 2]}}})", "'matrix' is not 16 numbers"},
-        Fault{R"({"nodes": {"0": {"scale": [1, 2, null]}}})", "'scale' is not 3 numbers"},
-        Fault{R"({"nodes": {"0": {"scale": [1e300, 1, 1]}}})", "not finite"},
-        Fault{R"({"nodes": {"0": {"camera": 0}}})", "there is no cameras[0]"},
-        Fault{R"({"scene": 3})", "there is no scenes[3]"},
-        Fault{R"({"scenes": 3})", "'scenes' is no object"},
-        Fault{R"({"meshes": {"0": {"primitives": {"0": {"material": 0}}}}})", "no materials[0]"},
-        Fault{R"({"materials": [{"emissiveTexture": {"index": 0}}]})", "no textures[0]"},
-        Fault{R"({"materials": [{"emissiveFactor": "red"}]})", "materials[0]: 'emissiveFactor'"},
-        Fault{R"({"meshes": [{"primitives": []}]})", "has no triangles"},
-        Fault{R"({"nodes": [{}]})", "has no triangles"}));
 
 TEST_F(GltfTest, IndicesOutOfRangeAndBadCoordinates) {
   Gltf out_of_range;
