@@ -375,7 +375,9 @@ class Reader {
       index = size_each == 4 ? bytes_.read<std::uint32_t>("an index")
                              : bytes_.read<std::uint16_t>("an index");
     }
-    while (next_is({kGeometry, kOperation, kSubmeshBones, kTextureAlias})) {
+    // Geometry that follows a submesh of shared vertices is the mesh's.
+    while (next_is({kOperation, kSubmeshBones, kTextureAlias}) ||
+           (!is_shared && next_is({kGeometry}))) {
       const Head part = next_chunk();
       if (part.id == kGeometry) {
         result.own = geometry();
@@ -393,7 +395,6 @@ class Reader {
         bytes_.go_to(part.end);
       }
     }
-    if (is_shared) result.own.reset();
     if (!is_shared && !result.own) {
       findings_.add(bytes_.place(head.begin), "the submesh has no geometry");
       result.own.emplace();

@@ -219,12 +219,9 @@ class Materials::Draft {
     }
   }
 
-  /// Carries out a block's statements: `attribute` for lines, `block` for blocks. Variables set in
-  /// it end with it.
+  /// Carries out a block's statements: `attribute` for lines, `block` for blocks.
   template <typename Attribute, typename Block>
   void carry_out(const Source& s, Attribute attribute, Block block) {
-    const std::size_t outer = variables_.size();
-    set_variables(s, s.statement->children);
     for (const Statement& child : s.statement->children) {
       const Source here{s.script, &child};
       const Words words = words_of(here);
@@ -233,6 +230,14 @@ class Materials::Draft {
       const bool known = child.is_block ? block(here, words) : attribute(here, words);
       if (!known) count_unknown(words[0]);
     }
+  }
+
+  /// The same for a part of a material: variables set in it end with it.
+  template <typename Attribute, typename Block>
+  void carry_out_part(const Source& s, Attribute attribute, Block block) {
+    const std::size_t outer = variables_.size();
+    set_variables(s, s.statement->children);
+    carry_out(s, attribute, block);
     variables_.resize(outer);
   }
 
@@ -290,7 +295,7 @@ class Materials::Draft {
   void technique(const Source& s, const Words& words, Technique& target) {
     inherit(s, words, [&](const Source& base) { technique(base, words, target); });
     std::size_t passes = 0;
-    carry_out(
+    carry_out_part(
         s, [](const Source&, const Words&) { return false; },
         [&](const Source& here, const Words& w) {
           if (w[0] != "pass") return false;
@@ -302,7 +307,7 @@ class Materials::Draft {
   void pass(const Source& s, const Words& words, Pass& target) {
     inherit(s, words, [&](const Source& base) { pass(base, words, target); });
     std::size_t units = 0;
-    carry_out(
+    carry_out_part(
         s, [&](const Source& here, const Words& w) { return pass_attribute(here, w, target); },
         [&](const Source& here, const Words& w) {
           if (w[0] != "texture_unit") return false;
@@ -386,7 +391,7 @@ class Materials::Draft {
 
   void texture_unit(const Source& s, const Words& words, TextureUnit& target) {
     inherit(s, words, [&](const Source& base) { texture_unit(base, words, target); });
-    carry_out(
+    carry_out_part(
         s,
         [&](const Source& here, const Words& w) {
           if (w.size() < 2) return false;
