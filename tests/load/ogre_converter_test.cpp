@@ -107,6 +107,15 @@ TEST_F(OgreConverter, BinaryFromXmlIsTheSameScene) {
   }
 }
 
+TEST_F(OgreConverter, OwnScenesAreTheSameInBinary) {
+  for (const char* name : {"cornell_box", "furnace", "two_rooms", "many_emitters"}) {
+    const auto file = std::filesystem::path(LANTERN_SOURCE_DIR) / "scenes" / name;
+    const std::string text = file.string() + ".mesh.xml";
+    ASSERT_TRUE(run(folder_, fmt::format("OgreXMLConverter -q '{}' own.mesh", text))) << name;
+    expect_same(load_ogre_xml(text, {}).scene, load_ogre_binary(folder_ / "own.mesh", {}).scene);
+  }
+}
+
 TEST_F(OgreConverter, OlderFormatsAreTheSameScene) {
   const std::map<std::string, std::string> formats{
       {"1.10", "1.100"}, {"1.8", "1.8"}, {"1.7", "1.41"}, {"1.4", "1.40"}, {"1.0", "1.30"}};
