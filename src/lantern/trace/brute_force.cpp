@@ -60,14 +60,10 @@ class BruteForceTracer : public Tracer {
     return false;
   }
 
-  std::uint32_t occluded(const LaneMask& active, RayPacket& packet) const override {
-    std::uint32_t blocked = 0;
+  void occluded(const LaneMask& active, RayPacket& packet) const override {
     for (int i = 0; i < kPacket; ++i) {
-      if (active.lane[i] == 0 || !occluded(lane(packet, i))) continue;
-      blocked |= 1u << i;
-      packet.far[i] = -kInfinity;
+      if (active.lane[i] != 0 && occluded(lane(packet, i))) packet.far[i] = -kInfinity;
     }
-    return blocked;
   }
 
   void closest(const LaneMask& active, RayPacket& packet, Hit* hits) const override {

@@ -125,13 +125,8 @@ class EmbreeTracer final : public Tracer {
     return query.tfar < 0.0f;
   }
 
-  std::uint32_t occluded(const LaneMask& active, RayPacket& packet) const override {
+  void occluded(const LaneMask& active, RayPacket& packet) const override {
     Query(true).occluded(active.lane, tree_, reinterpret_cast<RTCRay16&>(packet));
-    std::uint32_t blocked = 0;
-    for (int i = 0; i < kPacket; ++i) {
-      blocked |= static_cast<std::uint32_t>(packet.far[i] < 0.0f) << i;
-    }
-    return blocked;
   }
 
   void closest(const LaneMask& active, RayPacket& packet, Hit* hits) const override {

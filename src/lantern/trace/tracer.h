@@ -53,8 +53,8 @@ class Tracer {
 
   virtual Hit closest(const Ray& ray) const = 0;
   virtual bool occluded(const Ray& ray) const = 0;
-  /// Bit i is set where ray i of the active lanes is blocked. Overwrites `far` of blocked lanes.
-  virtual std::uint32_t occluded(const LaneMask& active, RayPacket& packet) const = 0;
+  /// `far` of the active lanes whose ray is blocked becomes minus infinity; the rest stays.
+  virtual void occluded(const LaneMask& active, RayPacket& packet) const = 0;
   /// Closest hits of the active lanes; idle lanes come back empty.
   virtual void closest(const LaneMask& active, RayPacket& packet, Hit* hits) const = 0;
 };
