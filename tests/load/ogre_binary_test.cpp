@@ -185,6 +185,39 @@ TEST(OgreBinaryShared, MayFollowWhatUsesItAndIsCompacted) {
   EXPECT_THAT(parsed.scene.meshes[0].triangles, ElementsAre(uvec3(2, 1, 0)));
 }
 
+TEST(OgreBinaryShared, ManySubmeshesOfManyVerticesTakeNoMoreThanTheirTriangles) {
+  ChunkWriter w;
+  w.u16(0x1000).string("[MeshSerializer_v1.8]");
+  w.chunk(0x3000, [&] {
+    w.u8(0);
+    BinaryMesh shared;
+    shared.vertices = 30000;
+    shared.data = [](ChunkWriter& data) {
+      for (int i = 0; i < 3 * 30000; ++i) data.put(0.0f);
+    };
+    shared.write_geometry(w);
+  });
+  // Half of the submeshes have no indices at all.
+  std::string file = w.text();
+  for (int i = 0; i < 30000; ++i) {
+    ChunkWriter submesh;
+    submesh.chunk(0x4000, [&] {
+      submesh.string("a").u8(1);
+      if (i % 2 == 0) {
+        submesh.u32(3).u8(0).u16(0).u16(1).u16(i);
+      } else {
+        submesh.u32(0).u8(0);
+      }
+    });
+    file += submesh.text();
+  }
+  const Parsed parsed = parse(file);
+  std::size_t vertices = 0;
+  for (const Mesh& mesh : parsed.scene.meshes) vertices += mesh.positions.size();
+  EXPECT_EQ(parsed.scene.meshes.size(), 30000u);
+  EXPECT_LE(vertices, 45000u);
+}
+
 TEST(OgreBinaryErrors, NameTheByte) {
   EXPECT_THAT(error(""), StartsWith("test.mesh: byte 0: "));
   EXPECT_THAT(error("\x10"), StartsWith("test.mesh: byte 0: "));

@@ -7,7 +7,7 @@
 #include "tests/load/ogre_files.h"
 #include "tests/support/temporary_folder.h"
 
-#include <memory>
+#include <fmt/format.h>
 
 namespace lantern {
 namespace {
@@ -173,6 +173,12 @@ TEST(OgreMaterial, Variables) {
   EXPECT_THAT(derived.scene.textures.at(0).name, HasSubstr("a.png"));
   const Used unset = pass("texture_unit {\ntexture $nothing\n}");
   EXPECT_THAT(unset.report.warnings, ElementsAre("0.material:8: $nothing is not set"));
+}
+
+TEST(OgreMaterial, VariablesDoNotGrowWithoutEnd) {
+  std::string script = "set $v0 word\n";
+  for (int i = 0; i < 60; ++i) script += fmt::format("set $v{} $v{} $v{}\n", i + 1, i, i);
+  EXPECT_THAT(script_error(script + "material m { }"), HasSubstr("longer than 4096 characters"));
 }
 
 TEST(OgreMaterial, AbstractPartsAreInherited) {

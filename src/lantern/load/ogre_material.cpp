@@ -16,6 +16,9 @@
 namespace lantern::ogre {
 namespace {
 
+constexpr std::size_t kMostInherited = 256;  // materials, or parts of them
+constexpr std::size_t kLongestValue = 4096;
+
 constexpr Rgb kOwnWhite{0.8f};
 constexpr Rgb kUndefined{0.8f, 0.2f, 0.8f};
 
@@ -121,6 +124,7 @@ class Materials::Draft {
 
   void build(const std::string& name, const std::map<std::string, std::string>& textures) {
     const Source source = scripts_.materials.at(name);
+    name_ = name;
     collect(name, source);
     for (const Source& s : chain_) set_variables(s, s.script->statements);
     // A derived material sets what its parents use, so variables come before all attributes.
@@ -162,12 +166,11 @@ class Materials::Draft {
 
   /// What the material inherits, eldest first, and then itself.
   void collect(const std::string& name, const Source& source) {
-    constexpr std::size_t kMost = 256;
     if (std::find(lineage_.begin(), lineage_.end(), name) != lineage_.end()) {
       fail(place(source), "material '{}' inherits itself", name);
     }
-    if (lineage_.size() + chain_.size() >= kMost) {
-      fail(place(source), "material '{}' inherits more than {} others", lineage_.front(), kMost);
+    if (lineage_.size() + chain_.size() >= kMostInherited) {
+      fail(place(source), "material '{}' inherits more than {} others", name_, kMostInherited);
     }
     lineage_.push_back(name);
     for (const std::string& parent : source.statement->parents) {
@@ -215,6 +218,11 @@ class Materials::Draft {
         if (i > 2) value += ' ';
         value += expand({s.script, &child}, child.words[i]);
       }
+      // Variables made of variables could grow without end.
+      if (value.size() > kLongestValue) {
+        fail({s.script->file.string(), child.line}, "the value of {} is longer than {} characters",
+             child.words[1].text, kLongestValue);
+      }
       variables_.emplace_back(child.words[1].text, std::move(value));
     }
   }
@@ -261,7 +269,6 @@ class Materials::Draft {
   /// Carries out the abstract blocks that a block inherits.
   template <typename CarryOut>
   void inherit(const Source& s, const Words& words, CarryOut carry_out_block) {
-    constexpr int kDeepest = 16;
     for (const std::string& parent : s.statement->parents) {
       const auto found = scripts_.abstracts.find(words[0] + " " + parent);
       if (found == scripts_.abstracts.end()) {
@@ -269,9 +276,12 @@ class Materials::Draft {
                                  to_string(place(s)), words[0], parent));
         continue;
       }
-      if (++inherited_ > kDeepest) fail(place(s), "{} '{}' inherits itself", words[0], parent);
+      // Counted over the whole material, so that neither cycles nor fans go on for long.
+      if (++inherited_ > kMostInherited) {
+        fail(place(s), "material '{}' inherits itself or more than {} parts", name_,
+             kMostInherited);
+      }
       carry_out_block(found->second);
-      --inherited_;
     }
   }
 
@@ -426,12 +436,13 @@ class Materials::Draft {
   const Scripts& scripts_;
   LoadReport& report_;
   Findings findings_;
+  std::string name_;
   std::vector<std::string> lineage_;
   std::vector<Source> chain_;
   std::vector<std::pair<std::string, std::string>> variables_;  // the last of a name counts
   std::map<std::string, Picture> aliases_;
   std::vector<Technique> techniques_;
-  int inherited_ = 0;
+  std::size_t inherited_ = 0;
 };
 
 Materials::Materials(Scene& scene, LoadReport& report, std::vector<std::filesystem::path> folders)

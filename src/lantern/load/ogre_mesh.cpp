@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -47,18 +46,18 @@ std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::uint32_t
   return result;
 }
 
-/// Keeps the vertices that the triangles use, in their order, and renumbers the triangles.
+/// Keeps the vertices that the triangles use, in their order, and renumbers the triangles. Takes
+/// time by the triangles alone, as many small submeshes may share many vertices.
 Geometry compact(const Geometry& geometry, std::vector<uvec3>& triangles) {
-  constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> place(geometry.positions.size(), kUnused);
-  for (const uvec3& t : triangles) place[t.x] = place[t.y] = place[t.z] = 0;
   std::vector<std::uint32_t> used;
-  for (std::uint32_t i = 0; i < place.size(); ++i) {
-    if (place[i] == kUnused) continue;
-    place[i] = static_cast<std::uint32_t>(used.size());
-    used.push_back(i);
-  }
-  for (uvec3& t : triangles) t = uvec3(place[t.x], place[t.y], place[t.z]);
+  used.reserve(3 * triangles.size());
+  for (const uvec3& t : triangles) used.insert(used.end(), {t.x, t.y, t.z});
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  const auto place = [&](std::uint32_t i) {
+    return static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), i) - used.begin());
+  };
+  for (uvec3& t : triangles) t = uvec3(place(t.x), place(t.y), place(t.z));
   return {chosen(geometry.positions, used), chosen(geometry.normals, used),
           chosen(geometry.texcoords, used), chosen(geometry.colours, used)};
 }
@@ -85,17 +84,19 @@ std::vector<std::optional<MeshId>> add_meshes(const MeshFile& file, Materials& m
       ids.push_back(std::nullopt);
       continue;
     }
-    static const Geometry kNothing;
-    const Geometry& source = submesh.own ? *submesh.own : (file.shared ? *file.shared : kNothing);
-    std::vector<uvec3> triangles;
-    if (submesh.indices.empty()) {
-      std::vector<std::uint32_t> in_order(source.positions.size());
+    std::vector<std::uint32_t> in_order;
+    if (submesh.indices.empty() && submesh.own) {
+      in_order.resize(submesh.own->positions.size());
       std::iota(in_order.begin(), in_order.end(), 0u);
-      triangles = triangles_of(in_order, submesh.operation);
-    } else {
-      triangles = triangles_of(submesh.indices, submesh.operation);
     }
-    Geometry geometry = submesh.own ? source : compact(source, triangles);
+    std::vector<uvec3> triangles =
+        triangles_of(submesh.indices.empty() ? in_order : submesh.indices, submesh.operation);
+    Geometry geometry;
+    if (submesh.own) {
+      geometry = *submesh.own;
+    } else if (file.shared) {
+      geometry = compact(*file.shared, triangles);
+    }
 
     Mesh mesh;
     mesh.name = submesh.name.empty() ? fmt::format("submesh {}", ids.size()) : submesh.name;

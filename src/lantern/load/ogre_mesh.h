@@ -44,7 +44,7 @@ struct Submesh {
   std::string name;
   std::string material;
   std::optional<Geometry> own;         // none: the mesh's shared geometry
-  std::vector<std::uint32_t> indices;  // none: the vertices in their order
+  std::vector<std::uint32_t> indices;  // none: its own vertices in their order
   Operation operation = Operation::kTriangleList;
   std::map<std::string, std::string> textures;  // alias -> picture
 };
