@@ -21,7 +21,7 @@ struct Arguments {
 
 void run(Arguments& arguments) {
   arguments.scene.check();
-  const LightOptions options = arguments.lights.options(kUsualPaths);
+  const LightOptions options = arguments.lights.options(kUsualPaths, 1);
   require_lights_format(arguments.out);
   require_writable(arguments.out);
   ThreadScope threads(arguments.scene.threads);

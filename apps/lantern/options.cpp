@@ -66,13 +66,19 @@ void LightArguments::add_to(CLI::App& command) {
   command.add_option("--sampler", sampler, "halton, scrambled (every dimension) or random")
       ->check(CLI::IsMember({"halton", "scrambled", "random"}))
       ->capture_default_str();
+  command
+      .add_option("--pool", pool,
+                  "Walk so many times the paths and keep the lights that matter most (1; with "
+                  "several passes 16)")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000}));
   command.add_flag("--jitter", jitter, "Jitter each point within the spacing of its generation");
   command.add_option("--seed", seed, "Another seed, another set of points")->capture_default_str();
 }
 
-LightOptions LightArguments::options(std::size_t default_paths) const {
+LightOptions LightArguments::options(std::size_t default_paths, std::size_t default_pool) const {
   LightOptions lights;
   lights.paths = paths > 0 ? paths : default_paths;
+  lights.pool = pool > 0 ? pool : default_pool;
   lights.jitter = jitter;
   lights.points.seed = seed;
   lights.points.sampler = sampler == "random"      ? Sampler::kRandom

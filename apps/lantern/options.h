@@ -38,6 +38,7 @@ struct SceneArguments {
 /// How lights are made.
 struct LightArguments {
   std::size_t paths = 0;  // 0: not given
+  std::size_t pool = 0;   // likewise
   std::string reflectivity = "auto";
   std::string sampler = "halton";
   bool jitter = false;
@@ -45,7 +46,7 @@ struct LightArguments {
 
   void add_to(CLI::App& command);
   /// Throws UsageError.
-  LightOptions options(std::size_t default_paths) const;
+  LightOptions options(std::size_t default_paths, std::size_t default_pool) const;
 };
 
 /// "WxH". Throws UsageError.

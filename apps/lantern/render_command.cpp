@@ -34,7 +34,7 @@ struct Arguments {
   std::string camera;
   std::string look_at;
   float fov = 0.0f;  // 0: not given
-  float bound = 100.0f;
+  std::optional<float> bound;
   bool compensate = false;
   float exposure = 0.0f;
   std::string tone = "plain";
@@ -76,16 +76,22 @@ RenderOptions render_options(const Arguments& arguments) {
   RenderOptions options;
   std::tie(options.width, options.height) = parse_size(arguments.size);
   const bool in_time = arguments.seconds > 0.0;
-  options.lights = arguments.lights.options(in_time ? kUsualPathsInTime : kUsualPaths);
   options.camera = camera_choice(arguments);
   options.passes = arguments.passes > 0 ? arguments.passes : in_time ? 0 : 1;
   if (in_time) options.seconds = arguments.seconds;
+  // A single pass is Keller's walk; several gain from choosing among many more lights.
+  constexpr std::size_t kPoolOfSeveralPasses = 16;
+  options.lights = arguments.lights.options(in_time ? kUsualPathsInTime : kUsualPaths,
+                                            options.passes == 1 ? 1 : kPoolOfSeveralPasses);
   // Several passes have a sample each; a single one must smooth its edges by itself.
   constexpr int kSamplesOfSinglePass = 4;
   options.samples = arguments.samples > 0 ? arguments.samples
                     : options.passes == 1 ? kSamplesOfSinglePass
                                           : 1;
-  options.bound = arguments.bound;
+  // What is compensated may be cut early; what is not must not be missed.
+  constexpr float kUsualBound = 50.0f, kUsualBoundCompensated = 5.0f;
+  options.bound =
+      arguments.bound.value_or(arguments.compensate ? kUsualBoundCompensated : kUsualBound);
   options.compensate = arguments.compensate;
   options.shadow_rays = arguments.single_rays ? ShadowRays::kSingle : ShadowRays::kPackets;
   return options;
@@ -97,6 +103,7 @@ Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
           {"scene", arguments.scene.path.filename().string()},
           {"method", arguments.method},
           {"lights", std::to_string(options.lights.paths)},
+          {"pool", std::to_string(options.lights.pool)},
           {"reflectivity", fmt::format("{}", statistics.reflectivity)},
           {"passes", std::to_string(statistics.passes)},
           {"samples", std::to_string(options.samples)},
@@ -203,9 +210,10 @@ void add_render(CLI::App& app) {
   command->add_option("--fov", a.fov, "Vertical field of view in degrees")
       ->check(CLI::Range(0.01f, 179.0f));
   command
-      ->add_option("--bound", a.bound, "Bound on the geometry term, relative to the scene (0: off)")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+      ->add_option(
+          "--bound", a.bound,
+          "Bound on the geometry term in 1/(bounding radius)^2, 0 for none (50; compensated 5)")
+      ->check(CLI::NonNegativeNumber);
   command->add_flag("--compensate", a.compensate, "Give back what the bound takes, by tracing");
   command->add_option("--exposure", a.exposure, "Stops, for PNG")
       ->check(CLI::Range(-100.0f, 100.0f));

@@ -470,7 +470,7 @@ TEST(IsHole, ComparesOpacityWithTheCutoff) {
   scene.textures.push_back(texture);
   Material& material = scene.materials[0];
   const World world = make_world(scene);
-  const auto hole = [&] { return is_hole(scene, world, 0, {0.2f, 0.2f}); };
+  const auto hole = [&] { return is_hole(scene, world, 0, {0.2f, 0.2f}, Vec3(0.0f), Vec3(1.0f)); };
   material.opacity = 0.5f;
   EXPECT_FALSE(hole());  // no mask
   material.alpha_cutoff = 0.5f;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/gather/gather.h"
 
-#include "lantern/sampling/hash.h"
+#include "lantern/core/hash.h"
 #include "lantern/sampling/warp.h"
 #include "lantern/scene/surface.h"
 

@@ -151,10 +151,9 @@ PathStart Emitters::start_on_triangle(const Source& source, float probability, V
   PathStart start;
   start.position = point.position;
   start.normal = front ? point.geometric_normal : -point.geometric_normal;
-  start.light_flux = is_hole(scene_, world_, source.index, uv)
-                         ? Rgb(0.0f)
-                         : emission_at(scene_, world_, source.index, uv, front) *
-                               (kPi * world_.area(source.index) / probability);
+  start.light_flux = emission_at(scene_, world_, source.index, uv, front) *
+                     (coverage_at(scene_, world_, source.index, uv) * kPi *
+                      world_.area(source.index) / probability);
   start.ray_flux = start.light_flux;
   start.origin = start.position;
   start.direction = Frame(start.normal).to_world(square_to_cosine_hemisphere(way));

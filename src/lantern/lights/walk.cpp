@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/lights/walk.h"
 
+#include "lantern/core/hash.h"
 #include "lantern/core/parallel.h"
-#include "lantern/sampling/hash.h"
 #include "lantern/sampling/warp.h"
 #include "lantern/scene/surface.h"
 

@@ -145,6 +145,7 @@ class Conversion {
     }
     source.Get(AI_MATKEY_SHININESS, material.shininess);
     source.Get(AI_MATKEY_OPACITY, material.opacity);
+    material.blend = material.opacity < 1.0f;
     int two_sided = 0;
     source.Get(AI_MATKEY_TWOSIDED, two_sided);
     material.double_sided = two_sided != 0;

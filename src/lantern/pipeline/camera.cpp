@@ -62,11 +62,10 @@ Camera framing_camera(const World& world, const Tracer& tracer, float vertical_f
   };
   // Outside: the near face of the bounds just fits. A little from above where there is something
   // open to look into.
-  const std::array<Vec3, 10> directions = {Vec3(0.0f, 0.0f, 1.0f),  Vec3(0.0f, 0.0f, -1.0f),
-                                           Vec3(1.0f, 0.0f, 0.0f),  Vec3(-1.0f, 0.0f, 0.0f),
-                                           Vec3(0.0f, 1.0f, 0.0f),  Vec3(0.0f, -1.0f, 0.0f),
-                                           Vec3(0.6f, 0.4f, 0.7f),  Vec3(-0.6f, 0.4f, 0.7f),
-                                           Vec3(0.6f, 0.4f, -0.7f), Vec3(-0.6f, 0.4f, -0.7f)};
+  const std::array<Vec3, 8> directions = {Vec3(0.0f, 0.0f, 1.0f),  Vec3(0.0f, 0.0f, -1.0f),
+                                          Vec3(1.0f, 0.0f, 0.0f),  Vec3(-1.0f, 0.0f, 0.0f),
+                                          Vec3(0.6f, 0.4f, 0.7f),  Vec3(-0.6f, 0.4f, 0.7f),
+                                          Vec3(0.6f, 0.4f, -0.7f), Vec3(-0.6f, 0.4f, -0.7f)};
   for (const Vec3& from : directions) {
     const Vec3 d = glm::normalize(from);
     const Camera at_origin = looking_at(d, Vec3(0.0f), vertical_fov);

@@ -3,13 +3,16 @@
 
 #include "lantern/core/error.h"
 #include "lantern/lights/emitters.h"
+#include "lantern/lights/resample.h"
 #include "lantern/scene/surface.h"
 #include "lantern/trace/embree.h"
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <mutex>
+#include <numbers>
 
 namespace lantern {
 namespace {
@@ -66,6 +69,24 @@ WalkOptions walk_options(const Scene& scene, const World& world, const LightOpti
                     walk.reflectivity, least));
   }
   return walk;
+}
+
+/// The lights of one pass: all that the walk leaves, or the pick of a larger walk.
+VirtualLights lights_of_pass(const Scene& scene, const Stage& stage, WalkOptions walk_with,
+                             std::size_t pool, std::size_t pass) {
+  walk_with.pass = pass;
+  if (pool <= 1) return walk(scene, stage.world, *stage.tracer, stage.emitters, walk_with);
+  std::size_t count = 0;
+  for (const std::size_t n : make_survival(walk_with.paths, walk_with.reflectivity, 0).paths) {
+    count += n;
+  }
+  const std::size_t paths = walk_with.paths;
+  walk_with.paths *= pool;
+  VirtualLights lights =
+      resample(walk(scene, stage.world, *stage.tracer, stage.emitters, walk_with), count,
+               std::fmod(static_cast<double>(pass) * std::numbers::sqrt2, 1.0));
+  lights.paths = paths;
+  return lights;
 }
 
 /// Passes added up in double precision: thousands of them lose nothing.
@@ -144,7 +165,7 @@ Rendered render(const Scene& scene, const RenderOptions& options, const StopFlag
   RenderStatistics& statistics = result.statistics;
   const Stage stage(scene);
   if (!options.given_lights) require_light(stage.emitters);
-  WalkOptions walk_with = walk_options(scene, stage.world, options.lights, result.warnings);
+  const WalkOptions walk_with = walk_options(scene, stage.world, options.lights, result.warnings);
   const Camera camera =
       choose_camera(scene, stage.world, *stage.tracer, options.camera,
                     static_cast<float>(options.width) / static_cast<float>(options.height));
@@ -170,8 +191,7 @@ Rendered render(const Scene& scene, const RenderOptions& options, const StopFlag
     const Stopwatch lights_watch;
     VirtualLights walked;
     if (!options.given_lights) {
-      walk_with.pass = pass;
-      walked = walk(scene, stage.world, *stage.tracer, stage.emitters, walk_with);
+      walked = lights_of_pass(scene, stage, walk_with, options.lights.pool, pass);
     }
     const VirtualLights& lights = options.given_lights ? *options.given_lights : walked;
     statistics.seconds_lights += lights_watch.seconds();
@@ -202,8 +222,8 @@ VirtualLights make_lights(const Scene& scene, const LightOptions& options,
                           std::vector<std::string>& warnings) {
   const Stage stage(scene);
   require_light(stage.emitters);
-  return walk(scene, stage.world, *stage.tracer, stage.emitters,
-              walk_options(scene, stage.world, options, warnings));
+  return lights_of_pass(scene, stage, walk_options(scene, stage.world, options, warnings),
+                        options.pool, 0);
 }
 
 }  // namespace lantern

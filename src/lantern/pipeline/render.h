@@ -22,6 +22,8 @@ namespace lantern {
 /// How lights are made.
 struct LightOptions {
   std::size_t paths = 256;
+  std::size_t pool = 1;               // walk so many times the paths and keep as many lights as
+                                      // `paths` would leave, those that matter (see resample.h)
   std::optional<float> reflectivity;  // none: the scene's mean
   bool jitter = false;
   PointSet points;

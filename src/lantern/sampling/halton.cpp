@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/sampling/halton.h"
 
-#include "lantern/sampling/hash.h"
+#include "lantern/core/hash.h"
 
 #include <algorithm>
 #include <array>

@@ -39,6 +39,7 @@ struct Material {
   bool double_sided = false;                     // emission leaves both sides
   float opacity = 1.0f;                          // multiplies the texture's alpha
   std::optional<float> alpha_cutoff;  // opacity below it is a hole, for rays of all kinds
+  bool blend = false;                 // else opacity is the share of the rays that is stopped
   Rgb specular{0.0f};                 // read and kept; nothing glossy is rendered yet
   float shininess = 0.0f;             // Phong exponent, likewise
 };

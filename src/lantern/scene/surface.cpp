@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/scene/surface.h"
 
+#include "lantern/core/hash.h"
 #include "lantern/scene/texture.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace lantern {
 namespace {
@@ -64,9 +66,9 @@ Rgb emission_at(const Scene& scene, const World& world, std::uint32_t triangle, 
                                         texcoord_at(world, triangle, uv)));
 }
 
-bool is_hole(const Scene& scene, const World& world, std::uint32_t triangle, Vec2 uv) {
+float coverage_at(const Scene& scene, const World& world, std::uint32_t triangle, Vec2 uv) {
   const Material& material = material_of(scene, world, triangle);
-  if (!material.alpha_cutoff) return false;
+  if (!has_holes(material)) return 1.0f;
   float opacity = material.opacity;
   if (material.reflectance_texture) {
     opacity *= sample(scene.textures[index(*material.reflectance_texture)],
@@ -76,7 +78,19 @@ bool is_hole(const Scene& scene, const World& world, std::uint32_t triangle, Vec
   if (material.vertex_colours && !world.colours.empty()) {
     opacity *= interpolate(world.colours, world.triangles[triangle], uv).a;
   }
-  return opacity < *material.alpha_cutoff;
+  if (material.alpha_cutoff) return opacity < *material.alpha_cutoff ? 0.0f : 1.0f;
+  return std::clamp(opacity, 0.0f, 1.0f);
+}
+
+bool is_hole(const Scene& scene, const World& world, std::uint32_t triangle, Vec2 uv,
+             const Vec3& origin, const Vec3& direction) {
+  const float coverage = coverage_at(scene, world, triangle, uv);
+  if (coverage <= 0.0f || coverage >= 1.0f) return coverage <= 0.0f;
+  std::uint64_t key = triangle;
+  for (const Vec3& v : {origin, direction}) {
+    for (int axis = 0; axis < 3; ++axis) key = hash(key, std::bit_cast<std::uint32_t>(v[axis]));
+  }
+  return to_unit_float(key) >= coverage;
 }
 
 float mean_reflectivity(const Scene& scene, const World& world) {

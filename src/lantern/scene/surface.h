@@ -22,8 +22,16 @@ SurfacePoint surface_at(const Scene& scene, const World& world, std::uint32_t tr
 Rgb emission_at(const Scene& scene, const World& world, std::uint32_t triangle, Vec2 uv,
                 bool from_front);
 
-/// Whether the point is a hole (alpha mask): rays of all kinds go through.
-bool is_hole(const Scene& scene, const World& world, std::uint32_t triangle, Vec2 uv);
+/// Whether rays may pass through surfaces of this material.
+inline bool has_holes(const Material& material) { return material.alpha_cutoff || material.blend; }
+
+/// Share of the rays that the surface stops, in [0, 1]; 0 or 1 but for blended materials.
+float coverage_at(const Scene& scene, const World& world, std::uint32_t triangle, Vec2 uv);
+
+/// Whether this ray passes through the surface at the point. Where coverage is partial a hash of
+/// the ray decides: every tracer says the same of the same ray.
+bool is_hole(const Scene& scene, const World& world, std::uint32_t triangle, Vec2 uv,
+             const Vec3& origin, const Vec3& direction);
 
 /// Area-weighted mean over all surfaces and the three channels: the share p of the walk [Keller
 /// 1997].

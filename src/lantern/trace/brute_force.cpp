@@ -85,7 +85,7 @@ class BruteForceTracer : public Tracer {
     const Hit hit{.distance = static_cast<float>(crossing->distance),
                   .triangle = triangle,
                   .uv = Vec2(crossing->uv)};
-    return is_hole(scene_, world_, triangle, hit.uv) ? Hit{} : hit;
+    return is_hole(scene_, world_, triangle, hit.uv, ray.origin, ray.direction) ? Hit{} : hit;
   }
 
   const Scene& scene_;

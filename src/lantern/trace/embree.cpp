@@ -93,8 +93,7 @@ class EmbreeTracer final : public Tracer {
 
     std::vector<std::uint32_t> solid, masked;
     for (std::uint32_t t = 0; t < world.size(); ++t) {
-      const bool may_have_holes =
-          scene.materials[index(world.materials[t])].alpha_cutoff.has_value();
+      const bool may_have_holes = has_holes(scene.materials[index(world.materials[t])]);
       (may_have_holes ? masked : solid).push_back(t);
     }
     attach(std::move(solid), false);
@@ -178,7 +177,13 @@ class EmbreeTracer final : public Tracer {
       const unsigned geometry = RTCHitN_geomID(args->hit, args->N, i);
       const unsigned primitive = RTCHitN_primID(args->hit, args->N, i);
       const Vec2 uv(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
-      if (is_hole(self.content_, self.world_, self.triangle(geometry, primitive), uv)) {
+      const Vec3 origin(RTCRayN_org_x(args->ray, args->N, i), RTCRayN_org_y(args->ray, args->N, i),
+                        RTCRayN_org_z(args->ray, args->N, i));
+      const Vec3 direction(RTCRayN_dir_x(args->ray, args->N, i),
+                           RTCRayN_dir_y(args->ray, args->N, i),
+                           RTCRayN_dir_z(args->ray, args->N, i));
+      if (is_hole(self.content_, self.world_, self.triangle(geometry, primitive), uv, origin,
+                  direction)) {
         args->valid[i] = 0;
       }
     }
