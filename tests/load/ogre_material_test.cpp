@@ -83,6 +83,8 @@ TEST(OgreMaterial, CullingAlphaAndBlending) {
   EXPECT_EQ(pass("diffuse 1 1 1 0.5").material.opacity, 1.0f);
   EXPECT_EQ(pass("diffuse 1 1 1 0.5\nscene_blend alpha_blend").material.opacity, 0.5f);
   EXPECT_FALSE(pass("diffuse 1 1 1 0.5\nscene_blend alpha_blend").material.alpha_cutoff);
+  EXPECT_TRUE(pass("scene_blend alpha_blend").material.blend);
+  EXPECT_FALSE(pass("alpha_rejection greater 1").material.blend);
   EXPECT_EQ(pass("scene_blend add").report.unknown.at("material: scene_blend"), 1);
 }
 

@@ -531,6 +531,7 @@ MaterialId Materials::use(const std::string& name,
     if (!is_black(pass.emissive)) material.emission_texture = material.reflectance_texture;
     material.double_sided = pass.double_sided;
     material.alpha_cutoff = pass.alpha_cutoff;
+    material.blend = pass.blends;
     if (pass.blends || pass.alpha_cutoff) material.opacity = std::clamp(diffuse.a, 0.0f, 1.0f);
     material.specular = pass.specular;
     material.shininess = pass.shininess;
