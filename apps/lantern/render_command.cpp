@@ -89,7 +89,7 @@ RenderOptions render_options(const Arguments& arguments) {
                     : options.passes == 1 ? kSamplesOfSinglePass
                                           : 1;
   // What is compensated may be cut early; what is not must not be missed.
-  constexpr float kUsualBound = 50.0f, kUsualBoundCompensated = 5.0f;
+  constexpr float kUsualBound = 20.0f, kUsualBoundCompensated = 5.0f;
   options.bound =
       arguments.bound.value_or(arguments.compensate ? kUsualBoundCompensated : kUsualBound);
   options.compensate = arguments.compensate;
@@ -212,7 +212,7 @@ void add_render(CLI::App& app) {
   command
       ->add_option(
           "--bound", a.bound,
-          "Bound on the geometry term in 1/(bounding radius)^2, 0 for none (50; compensated 5)")
+          "Bound on the geometry term in 1/(bounding radius)^2, 0 for none (20; compensated 5)")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--compensate", a.compensate, "Give back what the bound takes, by tracing");
   command->add_option("--exposure", a.exposure, "Stops, for PNG")

@@ -19,16 +19,19 @@ constexpr int kBlock = 4;  // pixels along the side of a packet
 constexpr int kTile = 32;  // pixels along the side of what one task works on
 static_assert(kBlock * kBlock == kPacket && kTile % kBlock == 0);
 
-/// Fractional part of n times an irrational, plus a shift: the R sequences, whose first n points
-/// are well spread for every n. [Roberts 2018, The Unreasonable Effectiveness of Quasirandom
-/// Sequences]
-Vec2 r2(std::uint64_t n, Vec2 shift) {
-  constexpr double kPlastic = 1.32471795724474602596;
-  const double x = static_cast<double>(n) * (1.0 / kPlastic) + static_cast<double>(shift.x);
-  const double y =
-      static_cast<double>(n) * (1.0 / (kPlastic * kPlastic)) + static_cast<double>(shift.y);
-  return {static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y))};
+/// The n-th member of the Kronecker sequence of a pair of irrationals, shifted.
+Vec2 kronecker(std::uint64_t n, glm::dvec2 irrational, Vec2 shift) {
+  const glm::dvec2 u = glm::fract(static_cast<double>(n) * irrational + glm::dvec2(shift));
+  return glm::min(Vec2(u), Vec2(kBelowOne));
 }
+
+/// Powers of the plastic number: the first n points are well spread for every n. [Roberts 2018, The
+/// Unreasonable Effectiveness of Quasirandom Sequences]
+constexpr double kPlastic = 1.32471795724474602596;
+constexpr glm::dvec2 kPixelSequence(1.0 / kPlastic, 1.0 / (kPlastic * kPlastic));
+/// Cube roots of 3 and 5, independent of the former over the rationals, so that what is traced is
+/// not tied to where in the pixel it starts.
+constexpr glm::dvec2 kCompensationSequence(1.44224957030740838232, 1.70997594667669698935);
 
 /// Rays from the eye through points of the picture, given in pixels from its upper left corner.
 class Eye {
@@ -59,7 +62,7 @@ struct ShadingPoint {
   Vec3 geometric_normal;
   Rgb throughput;  // of the radiance that leaves it, times its reflectance
   std::uint32_t pixel;
-  std::uint32_t stream;  // picks the random numbers of what follows from it
+  std::uint64_t sample;  // of the pixel, counted over passes
   std::uint32_t depth;   // how often the bound was compensated to get here
 };
 
@@ -100,7 +103,7 @@ class TileGatherer {
     const auto n =
         static_cast<std::uint64_t>(options_.pass) * static_cast<std::uint64_t>(options_.samples) +
         static_cast<std::uint64_t>(sample);
-    const Vec2 offset = r2(n, Vec2(0.5f));
+    const Vec2 offset = kronecker(n, kPixelSequence, Vec2(0.5f));
     RayPacket rays{};
     LaneMask active{};
     std::uint32_t pixels[kPacket];
@@ -133,9 +136,8 @@ class TileGatherer {
       pixel += share * emission_at(in_.scene, in_.world, hits[i].triangle, hits[i].uv, front);
       const SurfacePoint surface = surface_at(in_.scene, in_.world, hits[i].triangle, hits[i].uv);
       if (is_black(surface.reflectance)) continue;
-      points[count++] =
-          shading_point(surface, front, surface.shading_normal, share * surface.reflectance,
-                        pixels[i], static_cast<std::uint32_t>(sample), 0);
+      points[count++] = shading_point(surface, front, surface.shading_normal,
+                                      share * surface.reflectance, pixels[i], n, 0);
     }
     gather_at(std::span(points, count), image);
   }
@@ -147,7 +149,7 @@ class TileGatherer {
   Rgb background(const Vec3& direction) const { return in_.emitters.sky_radiance(-direction); }
 
   ShadingPoint shading_point(const SurfacePoint& surface, bool front, const Vec3& shading_normal,
-                             const Rgb& throughput, std::uint32_t pixel, std::uint32_t stream,
+                             const Rgb& throughput, std::uint32_t pixel, std::uint64_t sample,
                              std::uint32_t depth) const {
     const float side = front ? 1.0f : -1.0f;
     const Vec3 geometric = surface.geometric_normal * side;
@@ -156,7 +158,7 @@ class TileGatherer {
             geometric,
             throughput,
             pixel,
-            stream,
+            sample,
             depth};
   }
 
@@ -200,6 +202,19 @@ class TileGatherer {
     if (options_.compensate && bound_ < kInfinity) trace_residual(points, image);
   }
 
+  /// Random numbers of one sample at one depth, for what no sequence is spread over.
+  std::uint64_t random_bits(const ShadingPoint& p) const {
+    return hash(hash(options_.seed, p.pixel, p.depth), p.sample);
+  }
+
+  /// Where the compensating ray goes: over the samples of a pixel the first rays are well spread;
+  /// the few that follow are not tied to them.
+  Vec2 compensation_point(const ShadingPoint& p) const {
+    const std::uint64_t key = p.depth == 0 ? hash(options_.seed, p.pixel) : random_bits(p);
+    const Vec2 shift(to_unit_float(key), to_unit_float(hash(key)));
+    return p.depth == 0 ? kronecker(p.sample, kCompensationSequence, shift) : shift;
+  }
+
   /// One cosine-distributed ray from each point: what it hits sends (1 - bound/G)+ of its radiance,
   /// which is just what min(G, bound) left out. [Kollig & Keller 2004, equation 6]
   void trace_residual(std::span<const ShadingPoint> points, Image& image) {
@@ -207,10 +222,7 @@ class TileGatherer {
     LaneMask active{};
     for (std::size_t i = 0; i < points.size(); ++i) {
       const ShadingPoint& p = points[i];
-      constexpr std::uint64_t kCompensationStream = 0x636f6d7000000000u;
-      const std::uint64_t key = hash(options_.seed ^ kCompensationStream, p.pixel, p.stream);
-      const Vec2 shift(to_unit_float(hash(key)), to_unit_float(hash(key + 1)));
-      const Vec3 local = square_to_cosine_hemisphere(r2(options_.pass, shift));
+      const Vec3 local = square_to_cosine_hemisphere(compensation_point(p));
       const Vec3 direction = Frame(p.shading_normal).to_world(local);
       active.lane[i] = glm::dot(direction, p.geometric_normal) > 0.0f ? -1 : 0;
       counts_.compensation_rays += active.lane[i] != 0 ? 1 : 0;
@@ -235,20 +247,18 @@ class TileGatherer {
           weight * emission_at(in_.scene, in_.world, hits[i].triangle, hits[i].uv, front);
       Rgb throughput = weight * surface.reflectance;
       if (is_black(throughput)) continue;
-      const std::uint64_t key = hash(options_.seed ^ p.pixel, p.stream, options_.pass);
       // In a crevice between bright walls the chain of close hits is long: roulette ends it.
       constexpr std::uint32_t kSureDepth = 3;
       if (p.depth >= kSureDepth) {
         constexpr float kMostlyGoesOn = 0.9f;
         const float goes_on = std::min(
             kMostlyGoesOn, max_component(surface.reflectance) * (1.0f - bound_ / geometry_term));
-        if (to_unit_float(hash(key)) >= goes_on) continue;
+        if (to_unit_float(hash(random_bits(p), 1)) >= goes_on) continue;
         throughput /= goes_on;
       }
-      const auto stream = static_cast<std::uint32_t>(key >> 32);
       // Light paths know no shading normals, so their lights' other ends must not either.
       next_.push_back(shading_point(surface, front, surface.geometric_normal, throughput, p.pixel,
-                                    stream, p.depth + 1));
+                                    p.sample, p.depth + 1));
     }
   }
 
