@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -97,12 +98,19 @@ VirtualLights resample(const VirtualLights& pool, std::size_t count, double u) {
   lights.paths = pool.paths;
   lights.reflectivity = pool.reflectivity;
   const double spacing = all / static_cast<double>(count);
-  double reached = 0.0, next_tooth = u * spacing;
+  // One tooth in each stratum, each moved by an offset of its own: moved together they would all
+  // err to the same side.
+  const auto tooth = [&](std::size_t k) {
+    const double moved = u + static_cast<double>(k) * std::numbers::phi;
+    return (static_cast<double>(k) + (moved - std::floor(moved))) * spacing;
+  };
+  double reached = 0.0;
+  std::size_t next = 0;
   for (const std::uint32_t i : order) {
     const double w = weight(i);
     reached += w;
     int teeth = 0;
-    for (; next_tooth < reached; next_tooth += spacing) ++teeth;
+    for (; next < count && tooth(next) < reached; ++next) ++teeth;
     if (teeth == 0) continue;
     lights.kind.push_back(pool.kind[i]);
     lights.position.push_back(pool.position[i]);
