@@ -87,8 +87,7 @@ ShadingPacket see(const Scene& scene, const World& world, const Tracer& tracer,
 }
 
 void measure(const Scene& scene, const CameraChoice& choice) {
-  constexpr int kSize = 512, kBlock = 4,
-                kRow = 1, kStride = 16;
+  constexpr int kSize = 512, kBlock = 4, kRow = 1, kStride = 16;
   const World world = make_world(scene);
   const auto tracer = make_embree_tracer(scene, world);
   const Camera camera = choose_camera(scene, world, *tracer, choice, 1.0f);

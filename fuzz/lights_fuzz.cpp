@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "lantern/core/error.h"
+#include "lantern/lights/export.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    lantern::lights_from_json({reinterpret_cast<const char*>(data), size}, "fuzz");
+  } catch (const lantern::Error&) {
+  }
+  return 0;
+}
