@@ -2,6 +2,7 @@
 #include "lantern/gather/gather.h"
 
 #include "lantern/core/hash.h"
+#include "lantern/gather/term_bound.h"
 #include "lantern/sampling/warp.h"
 #include "lantern/scene/surface.h"
 
@@ -69,7 +70,7 @@ struct ShadingPoint {
 class TileGatherer {
  public:
   TileGatherer(const GatherInput& input, const GatherLights& lights, const GatherOptions& options,
-               float bound, GatherCounts& counts)
+               const TermBound& bound, GatherCounts& counts)
       : in_(input),
         lights_(lights),
         options_(options),
@@ -193,13 +194,13 @@ class TileGatherer {
       packet.active.lane[i] = i < points.size() ? -1 : 0;
     }
     IrradiancePacket irradiance;
-    counts_.shadow_rays +=
-        gather_irradiance(lights_, packet, in_.tracer, bound_, options_.shadow_rays, irradiance);
+    counts_.shadow_rays += gather_irradiance(lights_, packet, in_.tracer, bound_.reflected(),
+                                             options_.shadow_rays, irradiance);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Rgb e(irradiance.r[i], irradiance.g[i], irradiance.b[i]);
       image.pixels[points[i].pixel] += points[i].throughput * e * kInvPi;
     }
-    if (options_.compensate && bound_ < kInfinity) trace_residual(points, image);
+    if (options_.compensate && !bound_.none()) trace_residual(points, image);
   }
 
   /// Random numbers of one sample at one depth, for what no sequence is spread over.
@@ -228,7 +229,7 @@ class TileGatherer {
       counts_.compensation_rays += active.lane[i] != 0 ? 1 : 0;
       set_ray(rays, static_cast<int>(i), p.position, direction);
       // Further than this the bound takes nothing.
-      rays.far[i] = 1.0f / std::sqrt(bound_);
+      rays.far[i] = 1.0f / std::sqrt(bound_.reflected());
     }
     Hit hits[kPacket];
     in_.tracer.closest(active, rays, hits);
@@ -240,19 +241,22 @@ class TileGatherer {
       const float cos_at_hit = std::abs(glm::dot(surface.geometric_normal, direction));
       const float cos_at_point = glm::dot(p.shading_normal, direction);
       const float geometry_term = cos_at_point * cos_at_hit / (hits[i].distance * hits[i].distance);
-      if (!(geometry_term > bound_)) continue;
-      const Rgb weight = p.throughput * (1.0f - bound_ / geometry_term);
+      const auto left_out = [&](float bound) {
+        return std::max(0.0f, 1.0f - bound / geometry_term);
+      };
       const bool front = glm::dot(surface.geometric_normal, direction) < 0.0f;
       image.pixels[p.pixel] +=
-          weight * emission_at(in_.scene, in_.world, hits[i].triangle, hits[i].uv, front);
-      Rgb throughput = weight * surface.reflectance;
+          p.throughput * left_out(bound_.emitted(hits[i].triangle)) *
+          emission_at(in_.scene, in_.world, hits[i].triangle, hits[i].uv, front);
+      const float reflected = left_out(bound_.reflected());
+      Rgb throughput = p.throughput * surface.reflectance * reflected;
       if (is_black(throughput)) continue;
       // In a crevice between bright walls the chain of close hits is long: roulette ends it.
       constexpr std::uint32_t kSureDepth = 3;
       if (p.depth >= kSureDepth) {
         constexpr float kMostlyGoesOn = 0.9f;
-        const float goes_on = std::min(
-            kMostlyGoesOn, max_component(surface.reflectance) * (1.0f - bound_ / geometry_term));
+        const float goes_on =
+            std::min(kMostlyGoesOn, max_component(surface.reflectance) * reflected);
         if (to_unit_float(hash(random_bits(p), 1)) >= goes_on) continue;
         throughput /= goes_on;
       }
@@ -265,7 +269,7 @@ class TileGatherer {
   const GatherInput& in_;
   const GatherLights& lights_;
   const GatherOptions& options_;
-  float bound_;
+  const TermBound& bound_;
   float scale_;
   Eye eye_;
   GatherCounts& counts_;
@@ -278,9 +282,9 @@ Image gather(const GatherInput& input, const VirtualLights& lights, const Gather
              GatherCounts& counts, const StopFlag& stop,
              const std::function<void(std::size_t)>& tile_done) {
   Image image(options.width, options.height);
-  const GatherLights ready(lights, input.world.coordinate_scale());
-  const float radius = input.world.bounds.radius();
-  const float bound = options.bound > 0.0f ? options.bound / (radius * radius) : kInfinity;
+  const TermBound bound(input.scene, input.world, input.emitters, lights, options.bound);
+  const GatherLights ready(lights, input.world.coordinate_scale(),
+                           bound.of_lights(lights, input.tracer));
   const int columns = (options.width + kTile - 1) / kTile;
   const int rows = (options.height + kTile - 1) / kTile;
   const auto tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);

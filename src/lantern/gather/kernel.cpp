@@ -21,7 +21,8 @@ GatherKernel* widest_kernel() {
 
 }  // namespace
 
-GatherLights::GatherLights(const VirtualLights& lights, float coordinate_scale) {
+GatherLights::GatherLights(const VirtualLights& lights, float coordinate_scale,
+                           std::span<const float> bounds) {
   const auto put = [](float* target, const Vec3& v) {
     target[0] = v.x;
     target[1] = v.y;
@@ -37,6 +38,7 @@ GatherLights::GatherLights(const VirtualLights& lights, float coordinate_scale) 
         put(light.position, off_surface(lights.position[i], normal, coordinate_scale));
         put(light.normal, normal);
         put(light.flux, flux * kInvPi);
+        light.bound = bounds.empty() ? 0.0f : bounds[i];
         break;
       }
       case LightKind::kPoint:

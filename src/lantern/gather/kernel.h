@@ -6,6 +6,7 @@
 #include "lantern/trace/tracer.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace lantern {
@@ -15,6 +16,7 @@ namespace lantern {
 struct GatherLights {
   struct Surface {
     float position[3], normal[3], flux[3];  // flux over π: radiant intensity along the normal
+    float bound;                            // its own on the geometry term, where that is higher
   };
   struct Point {
     float position[3], axis[3], intensity[3];
@@ -27,7 +29,9 @@ struct GatherLights {
   std::vector<Point> point;
   std::vector<Directional> directional;
 
-  GatherLights(const VirtualLights& lights, float coordinate_scale);
+  /// `bounds`: one for each light, or empty for none of their own.
+  GatherLights(const VirtualLights& lights, float coordinate_scale,
+               std::span<const float> bounds = {});
   std::size_t size() const { return surface.size() + point.size() + directional.size(); }
 };
 
@@ -47,8 +51,9 @@ struct alignas(64) IrradiancePacket {
 enum class ShadowRays { kPackets, kSingle };
 
 /// Sums E = Σ I cos_x / d² V over the lights; the geometry term cos_x cos_y / d² of surface lights
-/// is cut at `bound` (1/m²; infinite: never). Returns the number of shadow rays traced: a ray is
-/// saved where light or point face away from each other. [Keller 1997, equation 4]
+/// cut at `bound` (1/m²; infinite: never) or at the light's own, whichever is higher. Returns the
+/// number of shadow rays traced: a ray is saved where light or point face away from each other.
+/// [Keller 1997, equation 4]
 std::uint64_t gather_irradiance(const GatherLights& lights, const ShadingPacket& points,
                                 const Tracer& tracer, float bound, ShadowRays rays,
                                 IrradiancePacket& irradiance);

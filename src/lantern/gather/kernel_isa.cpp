@@ -110,7 +110,6 @@ std::uint64_t LANTERN_ISA(const LightSpans& lights, const ShadingPacket& points,
   }
 
   Sum sum{};
-  const Float16 cut = Float16{} + bound;
   for (std::size_t l = 0; l < lights.surface_count; ++l) {
     const GatherLights::Surface& light = lights.surface[l];
     const Float16 dx = light.position[0] - p.x;
@@ -122,6 +121,7 @@ std::uint64_t LANTERN_ISA(const LightSpans& lights, const ShadingPacket& points,
     const Float16 beside = p.gx * dx + p.gy * dy + p.gz * dz;
     const Float16 at_light = -(light.normal[0] * dx + light.normal[1] * dy + light.normal[2] * dz);
     const Float16 term = (at_point * at_light) / (d2 * d2);
+    const Float16 cut = Float16{} + (light.bound > bound ? light.bound : bound);
     Share share;
     share.geometry = term < cut ? term : cut;
     share.wanted = p.active & (at_point > 0.0f) & (beside > 0.0f) & (at_light > 0.0f);
