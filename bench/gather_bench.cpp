@@ -144,7 +144,7 @@ void measure(const Scene& scene, const CameraChoice& choice) {
   fmt::print("{:<44}{:>12.1f}\n", "gather with shading, M rays/s, one core", all / shaded * 1e-6);
   fmt::print("{:<44}{:>12.3f}\n", "gather over raw", raw / shaded);
   fmt::print("{:<44}{:>12.3f}\n", "share of shading and ray set-up", 1.0 - raw / shaded);
-  fmt::print("{:<44}{:>12.2f}\n", "walk, M lights/s, all cores",
+  fmt::print("{:<44}{:>12.2f}\n", "walk, M lights/s, one core",
              static_cast<double>(crowd.size()) / walk_seconds * 1e-6);
 }
 
