@@ -73,15 +73,19 @@ std::vector<std::uint64_t> curve_positions(const VirtualLights& lights) {
 
 }  // namespace
 
-VirtualLights resample(const VirtualLights& pool, std::size_t count, double u) {
+VirtualLights resample(const VirtualLights& pool, std::size_t count, double u,
+                       double directional_area) {
+  const auto flux = [&](std::size_t i) {
+    const bool from_infinity = pool.kind[i] == LightKind::kDirectional;
+    return glm::dvec3(pool.flux[i]) * (from_infinity ? directional_area : 1.0);
+  };
   glm::dvec3 total(0.0);
-  for (const Rgb& flux : pool.flux) total += glm::dvec3(flux);
+  for (std::size_t i = 0; i < pool.size(); ++i) total += flux(i);
   const auto weight = [&](std::size_t i) {
+    const glm::dvec3 f = flux(i);
     double largest = 0.0;
     for (int c = 0; c < 3; ++c) {
-      if (total[c] > 0.0) {
-        largest = std::max(largest, static_cast<double>(pool.flux[i][c]) / total[c]);
-      }
+      if (total[c] > 0.0) largest = std::max(largest, f[c] / total[c]);
     }
     return largest;
   };

@@ -81,10 +81,12 @@ VirtualLights lights_of_pass(const Scene& scene, const Stage& stage, WalkOptions
     count += n;
   }
   const std::size_t paths = walk_with.paths;
+  const double radius = static_cast<double>(stage.world.bounds.radius());
+  const double disc = std::numbers::pi * radius * radius;
   walk_with.paths *= pool;
   VirtualLights lights =
       resample(walk(scene, stage.world, *stage.tracer, stage.emitters, walk_with), count,
-               std::fmod(static_cast<double>(pass) * std::numbers::sqrt2, 1.0));
+               std::fmod(static_cast<double>(pass) * std::numbers::sqrt2, 1.0), disc);
   lights.paths = paths;
   return lights;
 }
