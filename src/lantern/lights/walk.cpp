@@ -29,6 +29,10 @@ std::size_t first_survivor(std::size_t pass, std::size_t paths) {
 constexpr int kPlaceDimension = 0;  // and 1: the point on the emitters
 constexpr int kWayDimension = 2;    // and 3: the first direction; then two for each bounce
 
+/// The first point of the Halton sequence is 0 in every coordinate: a path from a corner, along an
+/// edge and out of the room, as nothing says on which side of the edge it is. It is left out.
+constexpr std::uint64_t kFirstPoint = 1;
+
 /// Coordinates of one path of the point set.
 class PathPoints {
  public:
@@ -120,8 +124,9 @@ VirtualLights walk(const Scene& scene, const World& world, const Tracer& tracer,
 
   const auto trace_path = [&](std::size_t i, VirtualLights& lights) {
     const std::size_t rank = (i + count - first) % count;
-    const PathPoints points(
-        options, static_cast<std::uint64_t>(options.pass) * count + static_cast<std::uint64_t>(i));
+    const PathPoints points(options, kFirstPoint +
+                                         static_cast<std::uint64_t>(options.pass) * count +
+                                         static_cast<std::uint64_t>(i));
     const auto generation = [&](std::size_t bounce) {
       return survival.paths[std::min(bounce, survival.paths.size() - 1)];
     };

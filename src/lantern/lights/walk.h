@@ -17,7 +17,7 @@ namespace lantern {
 struct WalkOptions {
   std::size_t paths = 256;    // N, at least 1
   float reflectivity = 0.5f;  // p in (0, 1): the share of the paths that survives each bounce
-  std::size_t pass = 0;       // pass k takes paths kN .. (k+1)N-1 of the point set
+  std::size_t pass = 0;       // pass k takes points 1 + kN .. (k+1)N of the point set
   bool jitter = false;        // moves each point by up to the spacing of its generation
   PointSet points;
 };
