@@ -57,25 +57,41 @@ Distribution2D make_sky_choice(const Texture& texture, double& mean_luminance_ti
   return sum > 0.0 ? Distribution2D(weights, texture.width, texture.height) : Distribution2D();
 }
 
+/// Points along the side of the grid that a triangle's flux is summed over: one for each texel that
+/// its longest edge crosses, so that no lamp drawn into the texture falls through.
+int flux_grid(const Texture& texture, const World& world, std::uint32_t triangle) {
+  constexpr float kFewest = 16.0f, kMost = 256.0f;
+  if (world.texcoords.empty()) return 1;
+  const uvec3 v = world.triangles[triangle];
+  const Vec2 size(texture.width, texture.height);
+  float longest = 0.0f;
+  for (int corner = 0; corner < 3; ++corner) {
+    const Vec2 edge = world.texcoords[v[(corner + 1) % 3]] - world.texcoords[v[corner]];
+    longest = std::max(longest, glm::length(edge * size));
+  }
+  if (!std::isfinite(longest)) return static_cast<int>(kMost);
+  return static_cast<int>(std::clamp(std::ceil(longest), kFewest, kMost));
+}
+
 }  // namespace
 
 Rgb triangle_flux(const Scene& scene, const World& world, std::uint32_t triangle, bool front) {
   const Material& material = scene.materials[index(world.materials[triangle])];
-  Rgb mean_radiance(0.0f);
+  glm::dvec3 mean_radiance(0.0);
   if (!material.emission_texture) {
     mean_radiance = emission_at(scene, world, triangle, Vec2(1.0f / 3.0f), front);
   } else {
-    constexpr int kGrid = 16;
-    for (int y = 0; y < kGrid; ++y) {
-      for (int x = 0; x < kGrid; ++x) {
-        const Vec2 u((static_cast<float>(x) + 0.5f) / kGrid,
-                     (static_cast<float>(y) + 0.5f) / kGrid);
+    const int grid = flux_grid(scene.textures[index(*material.emission_texture)], world, triangle);
+    const float cell = 1.0f / static_cast<float>(grid);
+    for (int y = 0; y < grid; ++y) {
+      for (int x = 0; x < grid; ++x) {
+        const Vec2 u((static_cast<float>(x) + 0.5f) * cell, (static_cast<float>(y) + 0.5f) * cell);
         mean_radiance += emission_at(scene, world, triangle, square_to_triangle(u), front);
       }
     }
-    mean_radiance *= 1.0f / (kGrid * kGrid);
+    mean_radiance /= static_cast<double>(grid) * grid;
   }
-  return mean_radiance * (kPi * world.area(triangle));
+  return Rgb(mean_radiance) * (kPi * world.area(triangle));
 }
 
 Emitters::Emitters(const Scene& scene, const World& world)
