@@ -10,7 +10,6 @@
 #include <cstring>
 #include <fcntl.h>
 #include <memory>
-#include <sys/stat.h>
 #include <unistd.h>
 
 namespace lantern {
@@ -49,11 +48,20 @@ Container read_into(const std::filesystem::path& path) {
 /// A temporary file in the target's folder that removes itself unless renamed.
 class Pending {
  public:
-  explicit Pending(const std::filesystem::path& target) : target_(target) {
-    if (std::filesystem::is_directory(target)) fail({target.string()}, "is a folder");
-    name_ = target.string() + ".part-XXXXXX";
-    descriptor_ = ::mkstemp(name_.data());
-    if (descriptor_ < 0) fail({target.string()}, "cannot be written: {}", reason());
+  explicit Pending(const std::filesystem::path& target) : target_(behind_links(target)) {
+    if (std::filesystem::is_directory(target_)) fail({target.string()}, "is a folder");
+    // The mode that any new file has: the user's mask decides who may read.
+    constexpr mode_t kAsTheMaskAllows = 0666;
+    for (int attempt = 0; descriptor_ < 0; ++attempt) {
+      name_ = fmt::format("{}.part-{}-{}", target_.string(), ::getpid(), attempt);
+      descriptor_ =
+          ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kAsTheMaskAllows);
+      constexpr int kAttempts = 100;
+      if (descriptor_ < 0 && (errno != EEXIST || attempt == kAttempts)) {
+        name_.clear();
+        fail({target.string()}, "cannot be written: {}", reason());
+      }
+    }
   }
   Pending(const Pending&) = delete;
   Pending& operator=(const Pending&) = delete;
@@ -72,8 +80,6 @@ class Pending {
   }
 
   void commit() {
-    constexpr mode_t kAllMayRead = 0644;
-    ::fchmod(descriptor_, kAllMayRead);
     const int closed = ::close(descriptor_);
     descriptor_ = -1;
     if (closed != 0 || std::rename(name_.c_str(), target_.c_str()) != 0) {
@@ -83,6 +89,13 @@ class Pending {
   }
 
  private:
+  /// A link stays one: what it points to is written.
+  static std::filesystem::path behind_links(const std::filesystem::path& path) {
+    std::error_code code;
+    const auto resolved = std::filesystem::weakly_canonical(path, code);
+    return std::filesystem::is_symlink(path, code) && !resolved.empty() ? resolved : path;
+  }
+
   std::filesystem::path target_;
   std::string name_;
   int descriptor_ = -1;
