@@ -472,7 +472,6 @@ class Reader {
     if (mode == "MASK" || mode == "BLEND") material.opacity = base.a;
     material.blend = mode == "BLEND";
     if (mode == "MASK") material.alpha_cutoff = number(source, "alphaCutoff", 0.5f);
-    if (mode == "BLEND") report_.warn("blended transparency is taken as opaque");
     scene_.materials.push_back(std::move(material));
   }
 
