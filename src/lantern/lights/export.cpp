@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 
 namespace lantern {
 namespace {
@@ -20,8 +21,15 @@ using Json = nlohmann::json;
 
 constexpr std::array kKindNames = {"surface", "point", "spot", "directional"};
 
-/// The shortest digits that read back as the same float.
-std::string triple(const Vec3& v) { return fmt::format("[{},{},{}]", v.x, v.y, v.z); }
+/// The shortest digits that read back as the same float. JSON takes "-0" for an integer, which has
+/// no sign at zero.
+std::string digits(float value) {
+  return value == 0.0f && std::signbit(value) ? "-0.0" : fmt::format("{}", value);
+}
+
+std::string triple(const Vec3& v) {
+  return fmt::format("[{},{},{}]", digits(v.x), digits(v.y), digits(v.z));
+}
 
 /// One light of the file; its errors name the light.
 class LightReader {
@@ -112,7 +120,8 @@ std::string to_json(const VirtualLights& lights) {
                      kKindNames[static_cast<std::size_t>(lights.kind[i])]);
     }
     if (lights.kind[i] == LightKind::kSpot) {
-      fmt::format_to(sink, ", \"cone\": [{},{}]", lights.cone[i].x, lights.cone[i].y);
+      fmt::format_to(sink, ", \"cone\": [{},{}]", digits(lights.cone[i].x),
+                     digits(lights.cone[i].y));
     }
     fmt::format_to(sink, "}}");
   }
@@ -206,7 +215,8 @@ std::string to_gltf(const VirtualLights& lights) {
     switch (kind) {
       case LightKind::kSurface:
         light["type"] = "spot";
-        light["spot"] = {{"innerConeAngle", 0.0f}, {"outerConeAngle", 0.5f * kPi}};
+        // In double precision: the float next to it is above the limit of a right angle.
+        light["spot"] = {{"innerConeAngle", 0.0f}, {"outerConeAngle", 0.5 * std::numbers::pi}};
         break;
       case LightKind::kSpot:
         light["type"] = "spot";
