@@ -227,6 +227,28 @@ INSTANTIATE_TEST_SUITE_P(Rooms, CompensatedFurnaceTest,
                                             ::testing::Values(Sampler::kHalton, Sampler::kScrambled,
                                                               Sampler::kRandom)));
 
+TEST(CompensatedFurnace, LosesNothingInLongChainsOfCloseHits) {
+  // So low a bound leaves nearly all to rays from hit to hit, many of them ended by roulette. What
+  // single pixels show is noisy; their mean is not.
+  constexpr float kReflectance = 0.9f, kBound = 0.1f;
+  CornerPicture picture(kReflectance, kBound, true);
+  WalkOptions walk_with;
+  walk_with.paths = 16;
+  walk_with.reflectivity = kReflectance;
+  double mean = 0.0, square = 0.0;
+  const std::vector<PassMean> pixels = picture.render(walk_with, 1600);
+  for (const PassMean& pixel : pixels) {
+    const double share = 1.0 / static_cast<double>(pixels.size());
+    mean += pixel.mean() * share;
+    square += pixel.standard_error() * pixel.standard_error() * share;
+  }
+  const double expected = kEmission / (1.0 - kReflectance);
+  EXPECT_NEAR(mean / expected, 1.0, kClaim);
+  // Rays of different pixels are independent, and nearly all comes from them.
+  EXPECT_LT(std::sqrt(square / static_cast<double>(pixels.size())) / expected,
+            kClaim / kClaimInErrors);
+}
+
 TEST(BoundedFurnace, EveryPixelIsBelowTheGeometricSeriesInTheMean) {
   // A single pass may lie above it, as any estimate may: the bound is a promise about the mean over
   // passes, which is an integral of min(G, b) <= G.
@@ -616,14 +638,20 @@ TEST(Kernel, TheBoundCutsTheGeometryTermOfSurfaceLightsAlone) {
   for (const float height : {0.5f, 1.0f, 2.0f, 4.0f}) {
     const float term = 1.0f / (height * height);
     for (const float bound : {0.1f, 0.9f, 1.0f, 1.1f, 5.0f}) {
-      const auto green = [&](LightKind kind) {
-        const GatherLights lights(one_light(kind, Vec3(0, height, 0), Vec3(0, -1, 0)), 0.0f);
+      const auto green = [&](LightKind kind, float own = 0.0f) {
+        const std::array bounds = {own};
+        const GatherLights lights(one_light(kind, Vec3(0, height, 0), Vec3(0, -1, 0)), 0.0f,
+                                  bounds);
         IrradiancePacket irradiance;
         gather_irradiance(lights, test::packet_of(receivers), *stage.tracer, bound,
                           ShadowRays::kPackets, irradiance);
         return irradiance.g[0];
       };
       EXPECT_FLOAT_EQ(green(LightKind::kSurface), std::min(term, bound) * kInvPi);
+      // A light's own bound counts where it is the higher one.
+      constexpr float kOwn = 1.0f;
+      EXPECT_FLOAT_EQ(green(LightKind::kSurface, kOwn),
+                      std::min(term, std::max(bound, kOwn)) * kInvPi);
       EXPECT_FLOAT_EQ(green(LightKind::kPoint), term / (4.0f * kPi));
       EXPECT_FLOAT_EQ(green(LightKind::kDirectional), 1.0f);
     }
