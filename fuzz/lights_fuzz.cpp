@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include "lantern/core/error.h"
+#include "lantern/lights/export.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
-
-#include "lantern/core/error.h"
-#include "lantern/lights/export.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

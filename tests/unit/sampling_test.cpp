@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "lantern/core/hash.h"
 #include "lantern/sampling/distribution.h"
 #include "lantern/sampling/halton.h"
-#include "lantern/core/hash.h"
 #include "lantern/sampling/warp.h"
 
 #include <gmock/gmock.h>
