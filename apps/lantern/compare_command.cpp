@@ -17,7 +17,8 @@ struct Arguments {
 };
 
 void run(const Arguments& arguments) {
-  const Comparison c = compare(read_image(arguments.a), read_image(arguments.b));
+  const Image a = read_image(arguments.a);
+  const Comparison c = compare(a, read_image(arguments.b));
   if (arguments.json) {
     const nlohmann::json out = {{"rmse", c.rmse},
                                 {"relmse", c.relmse},
