@@ -74,8 +74,8 @@ Scene open_air() {
   return scene;
 }
 
-Scene cornell_box() {
-  return load_scene(std::filesystem::path(LANTERN_SOURCE_DIR) / "scenes/cornell_box.scene").scene;
+Scene own_scene(const char* name) {
+  return load_scene(std::filesystem::path(LANTERN_SOURCE_DIR) / "scenes" / name).scene;
 }
 
 struct Case {
@@ -129,17 +129,26 @@ TEST_P(SameBitsTest, OnAnyNumberOfThreads) {
 }
 
 TEST_P(SameBitsTest, WithPacketsOrSingleRays) {
+  // Embree's coherent packets test a leaf's triangles against rays that miss its box, and its
+  // triangle test accepts misses within rounding: of ten million shadow rays each in four scenes
+  // two were stopped in a packet that were not alone, both within 1e-7 of an edge. Here none is.
   const Image packets = picture(0);
   options_.shadow_rays = ShadowRays::kSingle;
   expect_same(picture(0), packets);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, SameBitsTest,
-                         testing::Values(Case{"cornell_box", cornell_box},
-                                         Case{"open_air", open_air}),
-                         [](const testing::TestParamInfo<Case>& tested) {
-                           return std::string(tested.param.name);
-                         });
+TEST_P(SameBitsTest, ButNotWithAnotherSeed) {
+  const Image first = picture(0);
+  options_.lights.points.seed = 1;
+  EXPECT_NE(picture(0).pixels, first.pixels);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, SameBitsTest,
+    testing::Values(Case{"cornell_box", [] { return own_scene("cornell_box.scene"); }},
+                    Case{"many_emitters", [] { return own_scene("many_emitters.scene"); }},
+                    Case{"open_air", open_air}),
+    [](const testing::TestParamInfo<Case>& tested) { return std::string(tested.param.name); });
 
 }  // namespace
 }  // namespace lantern
