@@ -189,7 +189,8 @@ TEST_F(CommandTest, CompareTellsDistancesAsJson) {
     EXPECT_EQ(json["mean_a"][static_cast<std::size_t>(channel)], expected.mean_a[channel]);
     EXPECT_EQ(json["mean_b"][static_cast<std::size_t>(channel)], expected.mean_b[channel]);
   }
-  ASSERT_EQ(run(render("small.pfm", {"--size", "8x8"})).code, 0);
+  ASSERT_EQ(run({"render", own("furnace.scene"), "-o", path("small.pfm"), "--size", "8x8"}).code,
+            0);
   expect_failure(run({"compare", path("a.pfm"), path("small.pfm")}), 1, "8x8");
 }
 
@@ -324,10 +325,13 @@ TEST_F(CommandTest, KeepsTheOldPictureUntilTheNewOneIsWhole) {
 TEST_F(CommandTest, WritesWhatIsThereWhenInterrupted) {
   // One endless pass, and passes without end.
   const std::vector<std::vector<std::string>> endless = {
-      {"--size", "2048x2048", "--lights", "100000"}, {"--passes", "100000000"}};
+      {"--size", "2048x2048", "--lights", "4000"}, {"--size", "64x64", "--passes", "100000000"}};
   for (const int signal : {SIGINT, SIGTERM}) {
     for (const auto& options : endless) {
-      const Running running = start(render("a.exr", options, "cornell_box.scene"));
+      std::vector<std::string> arguments = {"render", own("cornell_box.scene"), "-o",
+                                            path("a.exr")};
+      arguments.insert(arguments.end(), options.begin(), options.end());
+      const Running running = start(arguments);
       std::this_thread::sleep_for(std::chrono::seconds(1));
       ::kill(running.process, signal);
       const Outcome outcome = finish(running);
