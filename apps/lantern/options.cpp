@@ -22,7 +22,7 @@ void SceneArguments::add_to(CLI::App& command) {
                   "Ogre material script beside those next to the scene (repeatable)")
       ->allow_extra_args(false);
   command.add_option("--unit", load.unit, "Metres per unit of the file")
-      ->check(CLI::PositiveNumber)
+      ->check(finite(1e-9, 1e9))
       ->capture_default_str();
   command
       .add_option("--emitter", emitters,
@@ -97,6 +97,18 @@ LightOptions LightArguments::options(std::size_t default_paths, std::size_t defa
     }
   }
   return lights;
+}
+
+CLI::Validator finite(double low, double high) {
+  return CLI::Validator(
+      [low, high](std::string& text) -> std::string {
+        double value = 0.0;
+        const char* end = text.data() + text.size();
+        const auto [stop, code] = std::from_chars(text.data(), end, value);
+        if (code == std::errc() && stop == end && value >= low && value <= high) return {};
+        return fmt::format("'{}' is not a number in {} to {}", text, low, high);
+      },
+      fmt::format("in {} to {}", low, high));
 }
 
 std::pair<int, int> parse_size(const std::string& text) {

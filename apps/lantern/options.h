@@ -7,6 +7,7 @@
 #include "lantern/pipeline/render.h"
 
 #include <CLI/App.hpp>
+#include <CLI/Validators.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -48,6 +49,9 @@ struct LightArguments {
   /// Throws UsageError.
   LightOptions options(std::size_t default_paths, std::size_t default_pool) const;
 };
+
+/// Accepts a finite number in [low, high].
+CLI::Validator finite(double low, double high);
 
 /// "WxH". Throws UsageError.
 std::pair<int, int> parse_size(const std::string& text);

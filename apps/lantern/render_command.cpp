@@ -9,7 +9,7 @@
 #include "apps/lantern/terminal.h"
 
 #include <CLI/CLI.hpp>
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <chrono>
@@ -99,19 +99,33 @@ RenderOptions render_options(const Arguments& arguments) {
 
 Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
                      const RenderStatistics& statistics) {
-  return {{"software", std::string("lantern ") + kVersion},
-          {"scene", arguments.scene.path.filename().string()},
-          {"method", arguments.method},
-          {"lights", std::to_string(options.lights.paths)},
-          {"pool", std::to_string(options.lights.pool)},
-          {"reflectivity", fmt::format("{}", statistics.reflectivity)},
-          {"passes", std::to_string(statistics.passes)},
-          {"samples", std::to_string(options.samples)},
-          {"bound", fmt::format("{}", options.bound)},
-          {"compensate", options.compensate ? "yes" : "no"},
-          {"sampler", arguments.lights.sampler},
-          {"jitter", arguments.lights.jitter ? "yes" : "no"},
-          {"seed", std::to_string(arguments.lights.seed)}};
+  Metadata metadata = {{"software", std::string("lantern ") + kVersion},
+                       {"scene", arguments.scene.path.filename().string()},
+                       {"method", arguments.method},
+                       {"lights", std::to_string(options.lights.paths)},
+                       {"pool", std::to_string(options.lights.pool)},
+                       {"reflectivity", fmt::format("{}", statistics.reflectivity)},
+                       {"passes", std::to_string(statistics.passes)},
+                       {"samples", std::to_string(options.samples)},
+                       {"bound", fmt::format("{}", options.bound)},
+                       {"compensate", options.compensate ? "yes" : "no"},
+                       {"sampler", arguments.lights.sampler},
+                       {"jitter", arguments.lights.jitter ? "yes" : "no"},
+                       {"seed", std::to_string(arguments.lights.seed)}};
+  // What is not given has its usual value.
+  const auto add_given = [&](const char* key, const std::string& value) {
+    if (!value.empty()) metadata[key] = value;
+  };
+  add_given("camera", arguments.camera);
+  add_given("look-at", arguments.look_at);
+  add_given("fov", arguments.fov > 0.0f ? fmt::format("{}", arguments.fov) : "");
+  add_given("time", arguments.seconds > 0.0 ? fmt::format("{}", arguments.seconds) : "");
+  add_given("sky", arguments.scene.sky);
+  add_given("emitter", fmt::format("{}", fmt::join(arguments.scene.emitters, " ")));
+  add_given("lights-from", arguments.lights_from);
+  add_given("exposure", fmt::format("{}", arguments.exposure));
+  add_given("tone", arguments.tone);
+  return metadata;
 }
 
 void print_json(const Rendered& rendered, double seconds_load, double seconds_total) {
@@ -192,9 +206,8 @@ void add_render(CLI::App& app) {
   command->add_option("-o,--output", a.out, "OUT.exr, OUT.png, OUT.hdr or OUT.pfm")->required();
   command->add_option("--size", a.size, "WxH in pixels")->capture_default_str();
   command->add_option("--passes", a.passes, "Passes, each with lights of its own (1)")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--time", a.seconds, "Stop after so many seconds")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1'000'000'000));
+  command->add_option("--time", a.seconds, "Stop after so many seconds")->check(finite(1e-3, 1e9));
   command
       ->add_option("--samples", a.samples, "Samples per pixel and pass (4; with several passes 1)")
       ->check(CLI::Range(1, 65536));
@@ -208,15 +221,14 @@ void add_render(CLI::App& app) {
   command->add_option("--camera", a.camera, "Name of a camera of the scene");
   command->add_option("--look-at", a.look_at, "ex,ey,ez,tx,ty,tz[,ux,uy,uz]: eye, target, up");
   command->add_option("--fov", a.fov, "Vertical field of view in degrees")
-      ->check(CLI::Range(0.01f, 179.0f));
+      ->check(finite(0.01, 179.0));
   command
       ->add_option(
           "--bound", a.bound,
           "Bound on the geometry term in 1/(bounding radius)^2, 0 for none (20; compensated 5)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(finite(0.0, 1e30));
   command->add_flag("--compensate", a.compensate, "Give back what the bound takes, by tracing");
-  command->add_option("--exposure", a.exposure, "Stops, for PNG")
-      ->check(CLI::Range(-100.0f, 100.0f));
+  command->add_option("--exposure", a.exposure, "Stops, for PNG")->check(finite(-100.0, 100.0));
   command->add_option("--tone", a.tone, "plain or filmic, for PNG")
       ->check(CLI::IsMember({"plain", "filmic"}))
       ->capture_default_str();

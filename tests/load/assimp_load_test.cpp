@@ -42,6 +42,16 @@ Ke 50 40 30
 map_Ke t.png
 )";
 
+TEST_F(AssimpTest, CutsPolygonsIntoTriangles) {
+  const Loaded loaded = load("a.obj",
+                             "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 .5 0\n"
+                             "f 1 2 3 4\nf 1 2 3 4 5\nf 1 2 3\n");
+  std::size_t triangles = 0;
+  for (const Mesh& mesh : loaded.scene.meshes) triangles += mesh.triangles.size();
+  EXPECT_EQ(triangles, 2u + 3u + 1u);
+  EXPECT_TRUE(loaded.report.warnings.empty());
+}
+
 TEST_F(AssimpTest, ReadsObjAndMtl) {
   write("a.mtl", kMtl);
   write("t.png", from_base64(kPng64));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/gather/term_bound.h"
 
+#include "lantern/scene/surface.h"
+
 #include <algorithm>
 
 namespace lantern {
@@ -19,6 +21,8 @@ TermBound::TermBound(const Scene& scene, const World& world, const Emitters& emi
 
 float TermBound::emitted(std::uint32_t triangle) const {
   const Material& material = scene_.materials[index(world_.materials[triangle])];
+  // The ray that looks for a light's triangle may pass through this one.
+  if (has_holes(material)) return reflected_;
   return std::max(reflected_, emitted_per_radiance_ * mean_component(material.emission));
 }
 
@@ -32,6 +36,7 @@ std::vector<float> TermBound::of_lights(const VirtualLights& lights, const Trace
     Ray down;
     down.origin = off_surface(lights.position[i], lights.normal[i], scale);
     down.direction = -lights.normal[i];
+    down.far = 2.0f * glm::length(down.origin - lights.position[i]);
     if (const Hit hit = tracer.closest(down)) bounds[i] = emitted(hit.triangle);
   }
   return bounds;

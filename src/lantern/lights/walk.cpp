@@ -177,11 +177,17 @@ VirtualLights walk(const Scene& scene, const World& world, const Tracer& tracer,
 float mean_squared_reflectance(const Scene& scene, const World& world) {
   double area_sum = 0.0;
   glm::dvec3 weighted(0.0);
+  // A few places of each triangle stand for its texture: a threshold for a warning needs no more.
+  constexpr int kGrid = 4;
   for (std::uint32_t t = 0; t < world.size(); ++t) {
     const double area = world.area(t);
-    const glm::dvec3 reflectance(surface_at(scene, world, t, Vec2(1.0f / 3.0f)).reflectance);
     area_sum += area;
-    weighted += area * reflectance * reflectance;
+    for (int i = 0; i < kGrid * kGrid; ++i) {
+      const Vec2 u((static_cast<float>(i % kGrid) + 0.5f) / kGrid,
+                   (static_cast<float>(i / kGrid) + 0.5f) / kGrid);
+      const glm::dvec3 reflectance(surface_at(scene, world, t, square_to_triangle(u)).reflectance);
+      weighted += area / (kGrid * kGrid) * reflectance * reflectance;
+    }
   }
   return area_sum > 0.0
              ? static_cast<float>(glm::max(weighted.r, glm::max(weighted.g, weighted.b)) / area_sum)

@@ -153,7 +153,8 @@ class Conversion {
 
   void add_mesh(const aiMesh& source) {
     std::optional<MeshId>& id = mesh_of_.emplace_back();
-    if (source.mPrimitiveTypes != aiPrimitiveType_TRIANGLE) {
+    // Polygons that were cut into triangles carry a flag beside the triangles'.
+    if (!(source.mPrimitiveTypes & aiPrimitiveType_TRIANGLE)) {
       dropped_ += source.mNumFaces;
       return;
     }

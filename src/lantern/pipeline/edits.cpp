@@ -90,7 +90,10 @@ void set_sky(const std::string& rgb_or_file, Scene& scene) {
   Sky sky;
   try {
     sky.radiance = parse_rgb(rgb_or_file);
-  } catch (const std::invalid_argument&) {
+  } catch (const std::invalid_argument& e) {
+    if (rgb_or_file.find_first_not_of("0123456789.,+-eE") == std::string::npos) {
+      throw Error(fmt::format("--sky: {}", e.what()));
+    }
     Raster raster = decode_raster(read_file(rgb_or_file), rgb_or_file);
     for (float& value : raster.linear) {
       if (!(value >= 0.0f) || !std::isfinite(value)) value = 0.0f;
