@@ -29,11 +29,17 @@ function(lantern_module name)
   target_link_libraries(lantern_${name} PUBLIC ${ARG_PUBLIC} PRIVATE lantern_options ${ARG_PRIVATE})
 endfunction()
 
-# lantern_test(NAME SOURCES ... LINK ...): a GoogleTest program; every test in it becomes a CTest test.
+# lantern_test(NAME SOURCES ... LINK ...): a GoogleTest program; every test in it becomes a CTest test
+# with the label NAME.
 function(lantern_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE lantern_options lantern_test_support ${ARG_LINK})
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300)
+  set(properties TIMEOUT 300 LABELS ${name})
+  if(LANTERN_SANITIZE MATCHES thread)
+    list(APPEND properties
+      ENVIRONMENT "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/support/tsan.supp")
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES ${properties})
 endfunction()
