@@ -86,7 +86,7 @@ VirtualLights lights_of_pass(const Scene& scene, const Stage& stage, WalkOptions
   walk_with.paths *= pool;
   VirtualLights lights =
       resample(walk(scene, stage.world, *stage.tracer, stage.emitters, walk_with), count,
-               std::fmod(static_cast<double>(pass) * std::cbrt(7.0), 1.0), disc);
+               std::fmod(static_cast<double>(pass) * std::numbers::sqrt2, 1.0), disc);
   lights.paths = paths;
   return lights;
 }
