@@ -101,8 +101,8 @@ Survival make_survival(std::size_t paths, float reflectivity, std::size_t pass) 
     // of 2 spreads the choices from a pool.
     const auto bounce = static_cast<int>(survival.paths.size() - 1);
     const double u =
-        bounce + 1 < kHaltonDimensions
-            ? kronecker(pass, std::sqrt(static_cast<double>(halton_base(bounce + 1))))
+        bounce < kHaltonDimensions
+            ? kronecker(pass, std::sqrt(static_cast<double>(halton_base(bounce))))
             : static_cast<double>(to_unit_float(hash(pass, static_cast<std::uint64_t>(bounce))));
     // p is a rounded number: 0.6 * 5 must not end below 3.
     constexpr double kRounding = 1e-6;

@@ -2,6 +2,7 @@
 #include "lantern/pipeline/render.h"
 
 #include "lantern/core/error.h"
+#include "lantern/core/hash.h"
 #include "lantern/lights/emitters.h"
 #include "lantern/lights/resample.h"
 #include "lantern/scene/surface.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <limits>
 #include <mutex>
 #include <numbers>
@@ -86,7 +86,7 @@ VirtualLights lights_of_pass(const Scene& scene, const Stage& stage, WalkOptions
   walk_with.paths *= pool;
   VirtualLights lights =
       resample(walk(scene, stage.world, *stage.tracer, stage.emitters, walk_with), count,
-               std::fmod(static_cast<double>(pass) * std::numbers::sqrt2, 1.0), disc);
+               static_cast<double>(to_unit_float(hash(pass))), disc);
   lights.paths = paths;
   return lights;
 }
