@@ -125,8 +125,7 @@ VirtualLights furnace_lights(const Stage& stage, const Furnace& f, float p, std:
   options.points = {f.sampler, 0};
   VirtualLights lights = walk(stage.scene, stage.world, *stage.tracer, stage.emitters, options);
   if (f.pool == 1) return lights;
-  const double u = std::fmod(static_cast<double>(pass) * std::numbers::phi, 1.0);
-  return resample(lights, lights.size() / f.pool, u);
+  return resample(lights, lights.size() / f.pool, pass);
 }
 
 TEST_P(FurnaceTest, IrradianceOfEveryPointIsThatOfTheGeometricSeries) {

@@ -784,8 +784,8 @@ TEST(Resample, KeepsTheFluxOfEqualLightsExactly) {
   VirtualLights pool = pool_of(stage, 512);
   for (Rgb& flux : pool.flux) flux = Rgb(2.0f, 1.0f, 0.5f);
   for (const std::size_t count : {1, 7, 64, 500}) {
-    for (const double u : {0.0, 0.3, 0.999}) {
-      const VirtualLights few = resample(pool, count, u);
+    for (const std::uint64_t pass : {0, 1, 77}) {
+      const VirtualLights few = resample(pool, count, pass);
       EXPECT_LE(few.size(), count);
       EXPECT_GT(few.size(), count / 3);
       EXPECT_NEAR(total_flux(few), total_flux(pool), kRounding * total_flux(pool));
@@ -793,8 +793,8 @@ TEST(Resample, KeepsTheFluxOfEqualLightsExactly) {
   }
 }
 
-TEST(Resample, IsUnbiasedOverTheComb) {
-  // A pool of unequal, coloured lights: the mean over combs of what a light sends is what it sent.
+TEST(Resample, IsUnbiasedOverPasses) {
+  // A pool of unequal, coloured lights: the mean over passes of what a light sends is what it sent.
   const Stage stage(test::box_room(kBoxSize, 0.5f, kEmission));
   VirtualLights pool = pool_of(stage, 64);
   for (std::size_t i = 0; i < pool.size(); ++i) {
@@ -802,25 +802,24 @@ TEST(Resample, IsUnbiasedOverTheComb) {
     pool.flux[i] *= Rgb(0.1f + to_unit_float(hash(1, key)), 0.1f + to_unit_float(hash(2, key)),
                         i % 5 == 0 ? 8.0f : 0.2f);
   }
-  constexpr std::size_t kCombs = 20000;
+  constexpr std::size_t kPasses = 1 << 14;
   constexpr std::size_t kCount = 16;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> place;
   for (std::size_t i = 0; i < pool.size(); ++i) place[{pool.path[i], pool.bounce[i]}] = i;
   std::vector<glm::dvec3> sums(pool.size(), glm::dvec3(0.0));
-  for (std::size_t comb = 0; comb < kCombs; ++comb) {
-    const VirtualLights few =
-        resample(pool, kCount, (static_cast<double>(comb) + 0.5) / static_cast<double>(kCombs));
+  for (std::uint64_t pass = 0; pass < kPasses; ++pass) {
+    const VirtualLights few = resample(pool, kCount, pass);
     ASSERT_LE(few.size(), kCount);
     for (std::size_t i = 0; i < few.size(); ++i) {
       const std::size_t from = place.at({few.path[i], few.bounce[i]});
       EXPECT_EQ(few.position[i], pool.position[from]);
       EXPECT_EQ(few.normal[i], pool.normal[from]);
-      sums[from] += glm::dvec3(few.flux[i]) / static_cast<double>(kCombs);
+      sums[from] += glm::dvec3(few.flux[i]) / static_cast<double>(kPasses);
     }
   }
   for (std::size_t i = 0; i < pool.size(); ++i) {
-    // The teeth that meet a light do so for intervals of u; with so many values of u, evenly
-    // spread, each end of an interval errs by one at most, over a light's chance to be met.
+    // A light is met while the choice of its stratum is in an interval; over so many passes, a
+    // power of two, each end of an interval errs by one at most, over a light's chance to be met.
     for (int c = 0; c < 3; ++c) {
       const double sent = static_cast<double>(pool.flux[i][c]);
       EXPECT_NEAR(sums[i][c] / sent, 1.0, 0.02) << "light " << i;
@@ -843,9 +842,9 @@ TEST(Resample, SpreadsOverPlaces) {
     pool.bounce.push_back(0);
     pool.cone.emplace_back(0.0f);
   }
-  for (const double u : {0.0, 0.25, 0.77}) {
+  for (const std::uint64_t pass : {0, 1, 77}) {
     std::map<std::tuple<bool, bool, bool>, int> met;
-    for (const Vec3& p : resample(pool, 8, u).position) {
+    for (const Vec3& p : resample(pool, 8, pass).position) {
       ++met[{p.x > 5.0f, p.y > 5.0f, p.z > 5.0f}];
     }
     EXPECT_THAT(met, SizeIs(8));
@@ -853,7 +852,7 @@ TEST(Resample, SpreadsOverPlaces) {
 }
 
 TEST(Resample, TakesPoolsOfNoneOneAndThoseAtInfinity) {
-  EXPECT_EQ(resample(VirtualLights{}, 4, 0.5).size(), 0u);
+  EXPECT_EQ(resample(VirtualLights{}, 4, 5).size(), 0u);
 
   VirtualLights pool;
   const auto add = [&](LightKind kind, const Vec3& position, const Vec3& normal) {
@@ -867,7 +866,7 @@ TEST(Resample, TakesPoolsOfNoneOneAndThoseAtInfinity) {
   };
   add(LightKind::kSpot, Vec3(1, 2, 3), Vec3(0, 0, -1));
   for (const std::size_t count : {1, 5}) {
-    const VirtualLights one = resample(pool, count, 0.4);
+    const VirtualLights one = resample(pool, count, 4);
     ASSERT_EQ(one.size(), 1u);
     EXPECT_EQ(one.kind[0], LightKind::kSpot);
     EXPECT_EQ(one.cone[0], Vec2(0.9f, 0.5f));
@@ -879,8 +878,8 @@ TEST(Resample, TakesPoolsOfNoneOneAndThoseAtInfinity) {
     add(LightKind::kDirectional, Vec3(0.0f),
         glm::normalize(Vec3(static_cast<float>(i) - 31.0f, -20.0f, 5.0f)));
   }
-  for (const double u : {0.0, 0.5, 0.9}) {
-    const VirtualLights few = resample(pool, 16, u);
+  for (const std::uint64_t pass : {0, 5, 9}) {
+    const VirtualLights few = resample(pool, 16, pass);
     EXPECT_LE(few.size(), 16u);
     EXPECT_GE(few.size(), 8u);
     double red = 0.0;

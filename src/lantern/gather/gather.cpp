@@ -5,6 +5,7 @@
 #include "lantern/gather/term_bound.h"
 #include "lantern/sampling/warp.h"
 #include "lantern/scene/surface.h"
+#include "lantern/trace/eye.h"
 
 #include <algorithm>
 #include <atomic>
@@ -33,28 +34,6 @@ constexpr glm::dvec2 kPixelSequence(1.0 / kPlastic, 1.0 / (kPlastic * kPlastic))
 /// Cube roots of 3 and 5, independent of the former over the rationals, so that what is traced is
 /// not tied to where in the pixel it starts.
 constexpr glm::dvec2 kCompensationSequence(1.44224957030740838232, 1.70997594667669698935);
-
-/// Rays from the eye through points of the picture, given in pixels from its upper left corner.
-class Eye {
- public:
-  Eye(const Camera& camera, int width, int height) : origin_(camera.eye) {
-    const Vec3 forward = glm::normalize(camera.forward);
-    const Vec3 right = glm::normalize(glm::cross(forward, camera.up));
-    const Vec3 up = glm::cross(right, forward);
-    const float half_height = std::tan(0.5f * camera.vertical_fov);
-    const float pixel = 2.0f * half_height / static_cast<float>(height);
-    step_x_ = right * pixel;
-    step_y_ = -up * pixel;
-    corner_ = forward - step_x_ * (0.5f * static_cast<float>(width)) -
-              step_y_ * (0.5f * static_cast<float>(height));
-  }
-
-  Vec3 origin() const { return origin_; }
-  Vec3 direction(float x, float y) const { return corner_ + step_x_ * x + step_y_ * y; }
-
- private:
-  Vec3 origin_, corner_, step_x_, step_y_;
-};
 
 /// A point that light is gathered at, on its way to a pixel.
 struct ShadingPoint {

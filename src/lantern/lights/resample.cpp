@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/lights/resample.h"
 
+#include "lantern/core/hash.h"
+#include "lantern/sampling/halton.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -73,7 +75,7 @@ std::vector<std::uint64_t> curve_positions(const VirtualLights& lights) {
 
 }  // namespace
 
-VirtualLights resample(const VirtualLights& pool, std::size_t count, double u,
+VirtualLights resample(const VirtualLights& pool, std::size_t count, std::uint64_t pass,
                        double directional_area) {
   const auto flux = [&](std::size_t i) {
     const bool from_infinity = pool.kind[i] == LightKind::kDirectional;
@@ -102,24 +104,24 @@ VirtualLights resample(const VirtualLights& pool, std::size_t count, double u,
   lights.paths = pool.paths;
   lights.reflectivity = pool.reflectivity;
   const double spacing = all / static_cast<double>(count);
-  // One tooth in each stratum, each moved by an offset of its own: moved together they would all
-  // err to the same side.
-  const auto tooth = [&](std::size_t k) {
-    const double moved = u + static_cast<double>(k) * std::numbers::phi;
-    return (static_cast<double>(k) + (moved - std::floor(moved))) * spacing;
+  // One choice in each stratum. Over passes each goes through its stratum evenly, scrambled by
+  // itself: choices that moved together would all err to the same side, and a sequence that the
+  // walk shares would tie them to what they choose from.
+  const auto choice = [&](std::size_t k) {
+    return (static_cast<double>(k) + scrambled_radical_inverse(2, pass, hash(k))) * spacing;
   };
   double reached = 0.0;
   std::size_t next = 0;
   for (const std::uint32_t i : order) {
     const double w = weight(i);
     reached += w;
-    int teeth = 0;
-    for (; next < count && tooth(next) < reached; ++next) ++teeth;
-    if (teeth == 0) continue;
+    int times = 0;
+    for (; next < count && choice(next) < reached; ++next) ++times;
+    if (times == 0) continue;
     lights.kind.push_back(pool.kind[i]);
     lights.position.push_back(pool.position[i]);
     lights.normal.push_back(pool.normal[i]);
-    lights.flux.push_back(pool.flux[i] * static_cast<float>(teeth * spacing / w));
+    lights.flux.push_back(pool.flux[i] * static_cast<float>(times * spacing / w));
     lights.path.push_back(pool.path[i]);
     lights.bounce.push_back(pool.bounce[i]);
     lights.cone.push_back(pool.cone[i]);

@@ -2,7 +2,7 @@
 #include "lantern/pipeline/render.h"
 
 #include "lantern/core/error.h"
-#include "lantern/core/hash.h"
+#include "lantern/image/accumulation.h"
 #include "lantern/lights/emitters.h"
 #include "lantern/lights/resample.h"
 #include "lantern/scene/surface.h"
@@ -84,37 +84,11 @@ VirtualLights lights_of_pass(const Scene& scene, const Stage& stage, WalkOptions
   const double radius = static_cast<double>(stage.world.bounds.radius());
   const double disc = std::numbers::pi * radius * radius;
   walk_with.paths *= pool;
-  VirtualLights lights =
-      resample(walk(scene, stage.world, *stage.tracer, stage.emitters, walk_with), count,
-               static_cast<double>(to_unit_float(hash(pass))), disc);
+  VirtualLights lights = resample(
+      walk(scene, stage.world, *stage.tracer, stage.emitters, walk_with), count, pass, disc);
   lights.paths = paths;
   return lights;
 }
-
-/// Passes added up in double precision: thousands of them lose nothing.
-class Accumulation {
- public:
-  Accumulation(int width, int height)
-      : width_(width),
-        height_(height),
-        sum_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
-
-  void add(const Image& pass) {
-    for (std::size_t i = 0; i < sum_.size(); ++i) sum_[i] += glm::dvec3(pass.pixels[i]);
-    ++passes_;
-  }
-  Image mean() const {
-    Image image(width_, height_);
-    const double scale = passes_ > 0 ? 1.0 / static_cast<double>(passes_) : 0.0;
-    for (std::size_t i = 0; i < sum_.size(); ++i) image.pixels[i] = Rgb(sum_[i] * scale);
-    return image;
-  }
-
- private:
-  int width_, height_;
-  std::vector<glm::dvec3> sum_;
-  std::size_t passes_ = 0;
-};
 
 /// Turns finished tiles into reports of the share done and the time left.
 class ProgressMeter {
