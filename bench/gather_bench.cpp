@@ -9,6 +9,7 @@
 #include "lantern/pipeline/render.h"
 #include "lantern/scene/surface.h"
 #include "lantern/trace/embree.h"
+#include "lantern/trace/eye.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -55,17 +56,12 @@ class Recorder final : public Tracer {
 ShadingPacket see(const Scene& scene, const World& world, const Tracer& tracer,
                   const Camera& camera, int x0, int y0, int size) {
   ShadingPacket packet{};
-  const Vec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
-  const Vec3 up = glm::cross(right, camera.forward);
-  const float half = std::tan(0.5f * camera.vertical_fov);
+  const Eye eye(camera, size, size);
   for (int i = 0; i < kPacket; ++i) {
-    const float sx =
-        (2.0f * (static_cast<float>(x0 + i % 4) + 0.5f) / static_cast<float>(size) - 1.0f) * half;
-    const float sy =
-        (1.0f - 2.0f * (static_cast<float>(y0 + i / 4) + 0.5f) / static_cast<float>(size)) * half;
     Ray ray;
-    ray.origin = camera.eye;
-    ray.direction = camera.forward + right * sx + up * sy;
+    ray.origin = eye.origin();
+    ray.direction =
+        eye.direction(static_cast<float>(x0 + i % 4) + 0.5f, static_cast<float>(y0 + i / 4) + 0.5f);
     const Hit hit = tracer.closest(ray);
     if (!hit) continue;
     const SurfacePoint point = surface_at(scene, world, hit.triangle, hit.uv);
@@ -164,7 +160,7 @@ int main(int argc, char** argv) {
   try {
     Loaded loaded = load_scene(scene_path);
     for (const std::string& text : emitters) apply(parse_emitter(text), loaded.scene);
-    if (!sky.empty()) set_sky(sky, loaded.scene);
+    if (!sky.empty()) set_sky(parse_sky(sky), loaded.scene);
     CameraChoice choice;
     if (fov > 0.0f) choice.vertical_fov = glm::radians(fov);
     if (!look_at.empty()) {

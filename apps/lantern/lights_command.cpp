@@ -22,7 +22,8 @@ struct Arguments {
 void run(Arguments& arguments) {
   arguments.scene.check();
   const LightOptions options = arguments.lights.options(kUsualPaths, 1);
-  require_lights_format(arguments.out);
+  check_format(arguments.out, require_lights_format);
+  require_other_file(arguments.out, arguments.scene.path);
   require_writable(arguments.out);
   ThreadScope threads(arguments.scene.threads);
   threads.run([&] {

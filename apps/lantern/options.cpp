@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/lantern/options.h"
 
+#include "lantern/core/error.h"
+
 #include "apps/lantern/commands.h"
 #include "apps/lantern/terminal.h"
 
@@ -41,12 +43,17 @@ void SceneArguments::check() {
   } catch (const std::invalid_argument& e) {
     throw UsageError(std::string("--emitter: ") + e.what());
   }
+  try {
+    if (!sky.empty()) sky_ = parse_sky(sky);
+  } catch (const std::invalid_argument& e) {
+    throw UsageError(e.what());
+  }
 }
 
 Loaded SceneArguments::load_scene_now() const {
   Loaded loaded = load_scene(path, load);
   for (const EmitterEdit& edit : edits_) apply(edit, loaded.scene);
-  if (!sky.empty()) set_sky(sky, loaded.scene);
+  if (sky_) set_sky(*sky_, loaded.scene);
   if (!quiet) {
     for (const std::string& warning : loaded.report.warnings) warn(warning);
     for (const auto& [what, times] : loaded.report.unknown) {
@@ -109,6 +116,23 @@ CLI::Validator finite(double low, double high) {
         return fmt::format("'{}' is not a number in {} to {}", text, low, high);
       },
       fmt::format("in {} to {}", low, high));
+}
+
+void check_format(const std::filesystem::path& out,
+                  const std::function<void(const std::filesystem::path&)>& require) {
+  try {
+    require(out);
+  } catch (const Error& e) {
+    if (!out.has_extension()) throw;
+    throw UsageError(e.what());
+  }
+}
+
+void require_other_file(const std::filesystem::path& out, const std::filesystem::path& read) {
+  std::error_code code;
+  if (std::filesystem::equivalent(out, read, code)) {
+    throw UsageError(fmt::format("{} is read and would be overwritten", out.string()));
+  }
 }
 
 std::pair<int, int> parse_size(const std::string& text) {

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,7 @@ struct SceneArguments {
 
  private:
   std::vector<EmitterEdit> edits_;
+  std::optional<SkyEdit> sky_;
 };
 
 /// How lights are made.
@@ -52,6 +54,14 @@ struct LightArguments {
 
 /// Accepts a finite number in [low, high].
 CLI::Validator finite(double low, double high);
+
+/// Runs `require` on the name of a file to write. A format that is asked for and cannot be written
+/// is wrong usage; a name that asks for none (a device, say) is an error like any other.
+void check_format(const std::filesystem::path& out,
+                  const std::function<void(const std::filesystem::path&)>& require);
+
+/// Throws UsageError if `out` is one of the files that are read.
+void require_other_file(const std::filesystem::path& out, const std::filesystem::path& read);
 
 /// "WxH". Throws UsageError.
 std::pair<int, int> parse_size(const std::string& text);

@@ -66,6 +66,10 @@ CameraChoice camera_choice(const Arguments& arguments) {
     choice.eye = Vec3(v[0], v[1], v[2]);
     choice.target = Vec3(v[3], v[4], v[5]);
     if (v.size() == 9) choice.up = Vec3(v[6], v[7], v[8]);
+    const Vec3 right = glm::cross(choice.target - *choice.eye, choice.up);
+    if (!(glm::dot(right, right) > 0.0f)) {
+      throw std::invalid_argument("eye, target and up must not lie on one line");
+    }
   } catch (const std::invalid_argument& e) {
     throw UsageError(std::string("--look-at: ") + e.what());
   }
@@ -162,7 +166,9 @@ void run(Arguments& arguments) {
   refuse_what_comes_later(arguments);
   arguments.scene.check();
   RenderOptions options = render_options(arguments);
-  require_image_format(arguments.out);
+  check_format(arguments.out, require_image_format);
+  require_other_file(arguments.out, arguments.scene.path);
+  require_other_file(arguments.out, arguments.lights_from);
   require_writable(arguments.out);
   ThreadScope threads(arguments.scene.threads);
   threads.run([&] {
@@ -190,6 +196,7 @@ void run(Arguments& arguments) {
     write_with.tone.exposure = arguments.exposure;
     write_with.tone.curve = arguments.tone == "filmic" ? ToneCurve::kFilmic : ToneCurve::kPlain;
     write_with.metadata = metadata_of(arguments, options, rendered.statistics);
+    finish_in_peace();
     write_image(arguments.out, rendered.image, write_with);
     if (arguments.json) print_json(rendered, seconds_load, seconds_since(start));
   });

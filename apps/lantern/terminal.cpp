@@ -65,4 +65,9 @@ const StopFlag& stop_on_interrupt() {
   return stop_flag;
 }
 
+void finish_in_peace() {
+  std::signal(SIGINT, SIG_IGN);
+  std::signal(SIGTERM, SIG_IGN);
+}
+
 }  // namespace lantern::app

@@ -30,4 +30,7 @@ class ProgressBar {
 /// The first Ctrl-C (or SIGTERM) sets the flag returned here, a second one ends the program.
 const StopFlag& stop_on_interrupt();
 
+/// From now on nothing interrupts the program: what it writes is written whole.
+void finish_in_peace();
+
 }  // namespace lantern::app

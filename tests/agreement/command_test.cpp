@@ -18,6 +18,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -223,7 +224,7 @@ TEST_F(CommandTest, WritesLightsInThreeFormats) {
   EXPECT_THAT(read_text(folder_ / "l.ply"), testing::StartsWith("ply\n"));
   const auto gltf = nlohmann::json::parse(read_text(folder_ / "l.gltf"));
   EXPECT_EQ(gltf["extensions"]["KHR_lights_punctual"]["lights"].size(), json["lights"].size());
-  expect_failure(run({"lights", own("furnace.scene"), "-o", path("l.txt")}), 1, "l.txt");
+  expect_failure(run({"lights", own("furnace.scene"), "-o", path("l.txt")}), 2, "l.txt");
 }
 
 TEST_F(CommandTest, RendersTheSameFromAFileOfLights) {
@@ -255,7 +256,11 @@ TEST_F(CommandTest, RefusesWrongUsage) {
       render("a.png", {"--lights", "0"}),
       render("a.png", {"--lights", "many"}),
       render("a.png", {"--reflectivity", "1.5"}),
+      render("a.gif"),
       render("a.png", {"--look-at", "1,2,3"}),
+      render("a.png", {"--look-at", "0,0,0,0,1,0"}),
+      render("a.png", {"--sky", "1,2"}),
+      render("a.png", {"--sky", "1,2,-3"}),
       render("a.png", {"--fov", "180"}),
       render("a.png", {"--emitter", "lamp"}),
       render("a.png", {"--time", "-1"}),
@@ -272,12 +277,10 @@ TEST_F(CommandTest, FailsInOneLine) {
   expect_failure(run({"render", path("none.mesh"), "-o", path("a.png")}), 1, "none.mesh");
   expect_failure(run({"info", path("none.glb")}), 1, "none.glb");
   expect_failure(run({"compare", path("none.exr"), path("none.exr")}), 1, "none.exr");
-  expect_failure(run(render("a.gif")), 1, "a.gif");
   expect_failure(run(render("a.png", {"--camera", "nobody"})), 1, "nobody");
   expect_failure(run(render("a.png", {"--emitter", "nothing*=1,1,1"})), 1, "nothing*");
   expect_failure(run(render("a.png", {"--sky", path("none.hdr")})), 1, "none.hdr");
   expect_failure(run(render("a.png", {"--lights-from", path("none.json")})), 1, "none.json");
-  expect_failure(run(render("a.png", {"--look-at", "0,0,0,0,1,0"})), 1, "--look-at");
   EXPECT_THAT(files(), testing::IsEmpty());
 }
 
@@ -293,6 +296,30 @@ TEST_F(CommandTest, LeavesNoFileWhereItCannotWrite) {
   fs::create_directory(folder_ / "folder.png");
   expect_failure(run(render("folder.png")), 1, "folder.png");
   fs::remove(folder_ / "folder.png");
+  EXPECT_THAT(files(), testing::IsEmpty());
+}
+
+TEST_F(CommandTest, OverwritesNothingThatItReads) {
+  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  write_file(folder_ / "a.png", mesh);
+  for (const char* command : {"render", "lights"}) {
+    expect_failure(run({command, path("a.png"), "-o", path("a.png")}), 2, "a.png");
+  }
+  EXPECT_EQ(read_text(folder_ / "a.png"), mesh);
+}
+
+TEST_F(CommandTest, FailsOnAFileThatGrowsTooLarge) {
+  const rlimit before = [] {
+    rlimit limit{};
+    ::getrlimit(RLIMIT_FSIZE, &limit);
+    return limit;
+  }();
+  // Room for what it says, not for the picture.
+  const rlimit small{512, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  const Outcome outcome = run(render("a.pfm"));
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  expect_failure(outcome, 1, "a.pfm");
   EXPECT_THAT(files(), testing::IsEmpty());
 }
 

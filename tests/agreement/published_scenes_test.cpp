@@ -87,7 +87,7 @@ TEST_F(OgreSamplesTest, CornellUnderASky) {
   Loaded loaded = load_scene(folder_ / "cornell.mesh");
   EXPECT_THAT(loaded.report.warnings, testing::IsEmpty());
   EXPECT_THAT(loaded.report.unknown, testing::IsEmpty());
-  set_sky("1,1,1", loaded.scene);
+  set_sky({}, loaded.scene);
   expect_lit(picture(loaded.scene, options_));
 }
 
@@ -96,7 +96,7 @@ TEST_F(OgreSamplesTest, SibenikUnderSunAndSky) {
   // Its triangles without area are real.
   EXPECT_THAT(loaded.report.warnings, testing::Each(testing::HasSubstr("triangles without area")));
   EXPECT_THAT(loaded.report.unknown, testing::IsEmpty());
-  set_sky("1,1,1", loaded.scene);
+  set_sky({}, loaded.scene);
   PunctualLight sun;
   sun.kind = PunctualKind::kDirectional;
   sun.intensity = Rgb(20.0f);

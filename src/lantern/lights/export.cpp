@@ -239,13 +239,16 @@ std::string to_gltf(const VirtualLights& lights) {
     list.push_back(std::move(light));
     roots.push_back(i);
   }
-  const Json file = {
-      {"asset", {{"version", "2.0"}, {"generator", fmt::format("Lantern {}", kVersion)}}},
-      {"extensionsUsed", {"KHR_lights_punctual"}},
-      {"extensions", {{"KHR_lights_punctual", {{"lights", list}}}}},
-      {"nodes", nodes},
-      {"scenes", {{{"nodes", roots}}}},
-      {"scene", 0}};
+  Json file = {{"asset", {{"version", "2.0"}, {"generator", fmt::format("Lantern {}", kVersion)}}},
+               {"scenes", {Json::object()}},
+               {"scene", 0}};
+  // glTF allows no empty arrays.
+  if (lights.size() > 0) {
+    file["extensionsUsed"] = {"KHR_lights_punctual"};
+    file["extensions"] = {{"KHR_lights_punctual", {{"lights", list}}}};
+    file["nodes"] = nodes;
+    file["scenes"] = {{{"nodes", roots}}};
+  }
   return file.dump(1) + "\n";
 }
 

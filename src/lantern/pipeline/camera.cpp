@@ -98,10 +98,6 @@ Camera choose_camera(const Scene& scene, const World& world, const Tracer& trace
   if (choice.eye) {
     camera.eye = *choice.eye;
     const Vec3 forward = choice.target - camera.eye;
-    const Vec3 right = glm::cross(forward, choice.up);
-    if (!(glm::dot(right, right) > 0.0f)) {
-      throw Error("--look-at: eye, target and up must not lie on one line");
-    }
     camera.forward = glm::normalize(forward);
     camera.up = choice.up;
     camera.vertical_fov = kUsualFov;

@@ -15,12 +15,12 @@ struct CameraChoice {
   std::string name;         // of a camera of the scene; empty: its first
   std::optional<Vec3> eye;  // with `target`: a camera of the user's own
   Vec3 target{0.0f};
-  Vec3 up{0.0f, 1.0f, 0.0f};
+  Vec3 up{0.0f, 1.0f, 0.0f};          // not on one line with them
   std::optional<float> vertical_fov;  // radians; overrides that of the camera chosen
 };
 
 /// The user's own camera, else the named one, else the scene's first, else one that frames the
-/// scene. Throws Error for a name that is not there or a camera that looks along its own up vector.
+/// scene. Throws Error for a name that is not there.
 Camera choose_camera(const Scene& scene, const World& world, const Tracer& tracer,
                      const CameraChoice& choice, float aspect);
 

@@ -86,20 +86,27 @@ void apply(const EmitterEdit& edit, Scene& scene) {
                           fmt::join(names, ", "), scene.materials.size() > kNamed ? ", ..." : ""));
 }
 
-void set_sky(const std::string& rgb_or_file, Scene& scene) {
-  Sky sky;
+SkyEdit parse_sky(const std::string& rgb_or_file) {
   try {
-    sky.radiance = parse_rgb(rgb_or_file);
+    return {parse_rgb(rgb_or_file), {}};
   } catch (const std::invalid_argument& e) {
     if (rgb_or_file.find_first_not_of("0123456789.,+-eE") == std::string::npos) {
-      throw Error(fmt::format("--sky: {}", e.what()));
+      throw std::invalid_argument(fmt::format("--sky: {}", e.what()));
     }
-    Raster raster = decode_raster(read_file(rgb_or_file), rgb_or_file);
+    return {Rgb(1.0f), rgb_or_file};
+  }
+}
+
+void set_sky(const SkyEdit& edit, Scene& scene) {
+  Sky sky;
+  sky.radiance = edit.radiance;
+  if (!edit.file.empty()) {
+    Raster raster = decode_raster(read_file(edit.file), edit.file);
     for (float& value : raster.linear) {
       if (!(value >= 0.0f) || !std::isfinite(value)) value = 0.0f;
     }
     Texture texture;
-    texture.name = rgb_or_file;
+    texture.name = edit.file;
     texture.width = raster.width;
     texture.height = raster.height;
     texture.srgb8 = std::move(raster.srgb8);

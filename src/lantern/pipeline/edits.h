@@ -31,7 +31,17 @@ std::vector<float> parse_numbers(std::string_view text);
 /// Throws Error if no material of the scene matches.
 void apply(const EmitterEdit& edit, Scene& scene);
 
-/// "R,G,B" for a constant sky, anything else is the path of a lat-long picture.
-void set_sky(const std::string& rgb_or_file, Scene& scene);
+/// The sky is this radiance, constant or times a lat-long picture's.
+struct SkyEdit {
+  Rgb radiance{1.0f};
+  std::string file;  // empty: constant
+};
+
+/// "R,G,B" for a constant sky, anything else is the path of a lat-long picture. Throws
+/// std::invalid_argument for what are numbers but not three.
+SkyEdit parse_sky(const std::string& rgb_or_file);
+
+/// Reads the picture, if there is one. Throws Error.
+void set_sky(const SkyEdit& edit, Scene& scene);
 
 }  // namespace lantern

@@ -96,6 +96,10 @@ class EmbreeTracer final : public Tracer {
       const bool may_have_holes = has_holes(scene.materials[index(world.materials[t])]);
       (may_have_holes ? masked : solid).push_back(t);
     }
+    vertices_ = rtcNewBuffer(device_, world.positions.size() * sizeof(Vec3));
+    if (void* data = vertices_ ? rtcGetBufferData(vertices_) : nullptr) {
+      std::memcpy(data, world.positions.data(), world.positions.size() * sizeof(Vec3));
+    }
     attach(std::move(solid), false);
     attach(std::move(masked), true);
     rtcCommitScene(tree_);
@@ -148,12 +152,11 @@ class EmbreeTracer final : public Tracer {
   void attach(std::vector<std::uint32_t> triangles, bool holes) {
     if (triangles.empty()) return;
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                             sizeof(Vec3), world_.positions.size());
+    rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices_, 0,
+                         sizeof(Vec3), world_.positions.size());
     void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                             sizeof(uvec3), triangles.size());
-    if (vertices && indices) {
-      std::memcpy(vertices, world_.positions.data(), world_.positions.size() * sizeof(Vec3));
+    if (indices) {
       for (std::size_t i = 0; i < triangles.size(); ++i) {
         static_cast<uvec3*>(indices)[i] = world_.triangles[triangles[i]];
       }
@@ -199,8 +202,10 @@ class EmbreeTracer final : public Tracer {
 
   void release() {
     if (tree_) rtcReleaseScene(tree_);
+    if (vertices_) rtcReleaseBuffer(vertices_);
     if (device_) rtcReleaseDevice(device_);
     tree_ = nullptr;
+    vertices_ = nullptr;
     device_ = nullptr;
   }
 
@@ -208,6 +213,7 @@ class EmbreeTracer final : public Tracer {
   const World& world_;
   RTCDevice device_ = nullptr;
   RTCScene tree_ = nullptr;
+  RTCBuffer vertices_ = nullptr;  // of all geometries
   std::vector<std::vector<std::uint32_t>>
       triangles_;  // geometry, primitive -> triangle of the world
   std::string error_;
