@@ -2,7 +2,9 @@
 // The command as its users meet it: what it writes, what it says and how it exits.
 #include "lantern/core/file.h"
 #include "lantern/image/compare.h"
+#include "lantern/image/flip.h"
 #include "lantern/image/read.h"
+#include "lantern/image/write.h"
 
 #include "tests/support/temporary_folder.h"
 
@@ -181,11 +183,12 @@ TEST_F(CommandTest, CompareTellsDistancesAsJson) {
   const Outcome outcome = run({"compare", path("a.pfm"), path("b.pfm"), "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
-  EXPECT_THAT(keys(json), IsSupersetOf({"rmse", "relmse", "mean_a", "mean_b"}));
+  EXPECT_THAT(keys(json), IsSupersetOf({"rmse", "relmse", "flip", "mean_a", "mean_b"}));
   const Comparison expected = compare(read_image(folder_ / "a.pfm"), read_image(folder_ / "b.pfm"));
   EXPECT_GT(expected.relmse, 0.0);
   EXPECT_EQ(json["rmse"], expected.rmse);
   EXPECT_EQ(json["relmse"], expected.relmse);
+  EXPECT_EQ(json["flip"], flip(read_image(folder_ / "a.pfm"), read_image(folder_ / "b.pfm")).mean);
   for (int channel = 0; channel < 3; ++channel) {
     EXPECT_EQ(json["mean_a"][static_cast<std::size_t>(channel)], expected.mean_a[channel]);
     EXPECT_EQ(json["mean_b"][static_cast<std::size_t>(channel)], expected.mean_b[channel]);
@@ -193,6 +196,35 @@ TEST_F(CommandTest, CompareTellsDistancesAsJson) {
   ASSERT_EQ(run({"render", own("furnace.scene"), "-o", path("small.pfm"), "--size", "8x8"}).code,
             0);
   expect_failure(run({"compare", path("a.pfm"), path("small.pfm")}), 1, "8x8");
+}
+
+TEST_F(CommandTest, CompareDrawsTheDifference) {
+  write_image(folder_ / "a.pfm", Image(20, 12, Rgb(3.0f, 1.0f, 0.5f)));
+  write_image(folder_ / "b.pfm", Image(20, 12, Rgb(1.0f, 2.0f, 0.5f)));
+  const auto compare_to = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"compare", path("a.pfm"), path("b.pfm")});
+    return run(more);
+  };
+  for (const char* name : {"d.exr", "d.pfm"}) {
+    ASSERT_EQ(compare_to({"--difference", path(name)}).code, 0);
+    EXPECT_EQ(read_image(folder_ / name).at(19, 11), Rgb(2.0f, -1.0f, 0.0f)) << name;
+  }
+  ASSERT_EQ(compare_to({"--difference", path("d.png"), "--flip-map", path("f.exr")}).code, 0);
+  // Luminance 0.2126 * 2 - 0.7152: darker, so blue.
+  const Rgb painted = read_image(folder_ / "d.png").at(0, 0);
+  EXPECT_GT(painted.b, painted.r);
+  const double whole = nlohmann::json::parse(compare_to({"--json"}).out)["flip"];
+  const double dimmed = nlohmann::json::parse(
+      compare_to({"--json", "--exposure", "-2", "--flip-map", path("g.exr")}).out)["flip"];
+  EXPECT_NEAR(read_image(folder_ / "f.exr").at(10, 6).g, whole, 1e-6);
+  EXPECT_NEAR(read_image(folder_ / "g.exr").at(10, 6).g, dimmed, 1e-6);
+  EXPECT_GT(std::abs(whole - dimmed), 0.01);
+  ASSERT_EQ(compare_to({"--flip-map", path("f.png")}).code, 0);
+  EXPECT_EQ(read_image(folder_ / "f.png").width, 20);
+  expect_failure(compare_to({"--difference", path("x.hdr")}), 1, "x.hdr");
+  expect_failure(compare_to({"--flip-map", path("x.txt")}), 1, "x.txt");
+  expect_failure(compare_to({"--difference", path("x.png"), "--difference-scale", "0"}), 2);
+  expect_failure(compare_to({"--pixels-per-degree", "0"}), 2);
 }
 
 TEST_F(CommandTest, InfoTellsWhatIsThere) {

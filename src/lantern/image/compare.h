@@ -8,6 +8,9 @@
 
 namespace lantern {
 
+/// Keeps the relative error of black reference pixels bounded.
+inline constexpr double kRelativeFloor = 0.01;
+
 struct Comparison {
   double rmse = 0.0;    // root of the mean of (a-b)² over pixels and channels
   double relmse = 0.0;  // mean of (a-b)²/(b²+0.01) over pixels and channels, b the reference
@@ -15,6 +18,9 @@ struct Comparison {
   glm::dvec3 mean_a{0.0};       // per channel
   glm::dvec3 mean_b{0.0};
 };
+
+/// Throws the errors named above.
+void require_comparable(const Image& a, const Image& b);
 
 /// `b` is the reference.
 Comparison compare(const Image& a, const Image& b);

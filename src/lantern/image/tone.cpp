@@ -29,14 +29,22 @@ float srgb_to_linear(float srgb) {
   return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
 }
 
-std::array<std::uint8_t, 3> to_srgb8(const Rgb& radiance, const Tone& tone) {
+Rgb shown(const Rgb& radiance, const Tone& tone) {
   const float scale = std::exp2(tone.exposure);
-  std::array<std::uint8_t, 3> bytes;
+  Rgb linear;
   for (int c = 0; c < 3; ++c) {
     const float exposed = scale * radiance[c];
-    const float shown = tone.curve == ToneCurve::kFilmic ? filmic(exposed) : exposed;
+    linear[c] = clip(tone.curve == ToneCurve::kFilmic ? filmic(exposed) : exposed);
+  }
+  return linear;
+}
+
+std::array<std::uint8_t, 3> to_srgb8(const Rgb& radiance, const Tone& tone) {
+  const Rgb linear = shown(radiance, tone);
+  std::array<std::uint8_t, 3> bytes;
+  for (int c = 0; c < 3; ++c) {
     bytes[static_cast<std::size_t>(c)] =
-        static_cast<std::uint8_t>(255.0f * linear_to_srgb(shown) + 0.5f);
+        static_cast<std::uint8_t>(255.0f * linear_to_srgb(linear[c]) + 0.5f);
   }
   return bytes;
 }

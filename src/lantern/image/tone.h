@@ -30,6 +30,10 @@ float linear_to_srgb(float linear);
 /// The inverse.
 float srgb_to_linear(float srgb);
 
+/// What a screen shows of the radiance, linear and in [0, 1].
+Rgb shown(const Rgb& radiance, const Tone& tone);
+
+/// The same as bytes.
 std::array<std::uint8_t, 3> to_srgb8(const Rgb& radiance, const Tone& tone);
 
 }  // namespace lantern
