@@ -33,7 +33,7 @@ void run(Arguments& arguments) {
     if (!arguments.scene.quiet) {
       for (const std::string& warning : warnings) warn(warning);
     }
-    write_lights(arguments.out, lights);
+    write_lights(arguments.out, lights, loaded.scene.origin);
   });
 }
 

@@ -173,12 +173,12 @@ void run(Arguments& arguments) {
   ThreadScope threads(arguments.scene.threads);
   threads.run([&] {
     const StopFlag& stop = stop_on_interrupt();
+    const Loaded loaded = arguments.scene.load_scene_now();
     std::optional<VirtualLights> given;
     if (!arguments.lights_from.empty()) {
-      given = read_lights(arguments.lights_from);
+      given = read_lights(arguments.lights_from, loaded.scene.origin);
       options.given_lights = &*given;
     }
-    const Loaded loaded = arguments.scene.load_scene_now();
     const double seconds_load = seconds_since(start);
 
     Rendered rendered;

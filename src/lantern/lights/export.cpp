@@ -27,6 +27,16 @@ std::string digits(float value) {
   return value == 0.0f && std::signbit(value) ? "-0.0" : fmt::format("{}", value);
 }
 
+/// A position in the file's coordinates: the sum in double precision, which loses nothing.
+std::string place(const Vec3& position, const Vec3& origin) {
+  const auto axis = [&](int i) {
+    return origin[i] == 0.0f ? digits(position[i])
+                             : fmt::format("{}", static_cast<double>(position[i]) +
+                                                     static_cast<double>(origin[i]));
+  };
+  return fmt::format("[{},{},{}]", axis(0), axis(1), axis(2));
+}
+
 std::string triple(const Vec3& v) {
   return fmt::format("[{},{},{}]", digits(v.x), digits(v.y), digits(v.z));
 }
@@ -44,6 +54,18 @@ class LightReader {
     if (!value.is_array() || value.size() != 3)
       refuse(fmt::format("'{}' is not three numbers", key));
     return {number(value[0], key), number(value[1], key), number(value[2], key)};
+  }
+
+  /// The inverse of place().
+  Vec3 position(const Vec3& origin) const {
+    const Json& value = member("position");
+    Vec3 position = vector("position");
+    for (int i = 0; i < 3; ++i) {
+      if (origin[i] == 0.0f) continue;
+      position[i] = static_cast<float>(value[static_cast<std::size_t>(i)].get<double>() -
+                                       static_cast<double>(origin[i]));
+    }
+    return position;
   }
 
   Vec2 pair(const char* key) const {
@@ -105,7 +127,7 @@ Vec4 rotation_to(const Vec3& direction) {
 
 }  // namespace
 
-std::string to_json(const VirtualLights& lights) {
+std::string to_json(const VirtualLights& lights, const Vec3& origin) {
   fmt::memory_buffer out;
   const auto sink = std::back_inserter(out);
   fmt::format_to(sink, "{{\"paths\": {}, \"reflectivity\": {}, \"lights\": [", lights.paths,
@@ -113,7 +135,7 @@ std::string to_json(const VirtualLights& lights) {
   for (std::size_t i = 0; i < lights.size(); ++i) {
     fmt::format_to(
         sink, "{}\n{{\"position\": {}, \"normal\": {}, \"flux\": {}, \"path\": {}, \"bounce\": {}",
-        i == 0 ? "" : ",", triple(lights.position[i]), triple(lights.normal[i]),
+        i == 0 ? "" : ",", place(lights.position[i], origin), triple(lights.normal[i]),
         triple(lights.flux[i]), lights.path[i], lights.bounce[i]);
     if (lights.kind[i] != LightKind::kSurface) {
       fmt::format_to(sink, ", \"kind\": \"{}\"",
@@ -129,7 +151,7 @@ std::string to_json(const VirtualLights& lights) {
   return fmt::to_string(out);
 }
 
-VirtualLights lights_from_json(std::string_view text, const std::string& name) {
+VirtualLights lights_from_json(std::string_view text, const std::string& name, const Vec3& origin) {
   Json file;
   try {
     file = Json::parse(text);
@@ -161,7 +183,7 @@ VirtualLights lights_from_json(std::string_view text, const std::string& name) {
     }
     if (glm::any(glm::lessThan(flux, Rgb(0.0f)))) reader.refuse("'flux' is negative");
     lights.kind.push_back(kind);
-    lights.position.push_back(reader.vector("position"));
+    lights.position.push_back(reader.position(origin));
     lights.normal.push_back(normal);
     lights.flux.push_back(flux);
     lights.path.push_back(reader.count("path"));
@@ -171,7 +193,7 @@ VirtualLights lights_from_json(std::string_view text, const std::string& name) {
   return lights;
 }
 
-std::string to_ply(const VirtualLights& lights) {
+std::string to_ply(const VirtualLights& lights, const Vec3& origin) {
   float brightest = 0.0f;
   for (const Rgb& flux : lights.flux) brightest = std::max(brightest, max_component(flux));
   fmt::memory_buffer out;
@@ -187,7 +209,7 @@ std::string to_ply(const VirtualLights& lights) {
   }
   fmt::format_to(sink, "end_header\n");
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    const Vec3 p = lights.position[i], n = lights.normal[i];
+    const Vec3 p = lights.position[i] + origin, n = lights.normal[i];
     const Rgb f = lights.flux[i];
     const auto channel = [&](float value) {
       return brightest > 0.0f ? std::lround(255.0f * std::sqrt(value / brightest)) : 0;
@@ -199,7 +221,7 @@ std::string to_ply(const VirtualLights& lights) {
   return fmt::to_string(out);
 }
 
-std::string to_gltf(const VirtualLights& lights) {
+std::string to_gltf(const VirtualLights& lights, const Vec3& origin) {
   Json list = Json::array(), nodes = Json::array(), roots = Json::array();
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const Rgb flux = lights.flux[i];
@@ -230,7 +252,7 @@ std::string to_gltf(const VirtualLights& lights) {
         light["type"] = "directional";
         break;
     }
-    const Vec3 p = lights.position[i];
+    const Vec3 p = lights.position[i] + origin;
     const Vec4 q = rotation_to(lights.normal[i]);
     nodes.push_back({{"name", fmt::format("path {} bounce {}", lights.path[i], lights.bounce[i])},
                      {"translation", {p.x, p.y, p.z}},
@@ -259,16 +281,17 @@ void require_lights_format(const std::filesystem::path& path) {
   }
 }
 
-void write_lights(const std::filesystem::path& path, const VirtualLights& lights) {
+void write_lights(const std::filesystem::path& path, const VirtualLights& lights,
+                  const Vec3& origin) {
   require_lights_format(path);
   const std::string kind = extension(path);
-  write_file(path, kind == ".json"  ? to_json(lights)
-                   : kind == ".ply" ? to_ply(lights)
-                                    : to_gltf(lights));
+  write_file(path, kind == ".json"  ? to_json(lights, origin)
+                   : kind == ".ply" ? to_ply(lights, origin)
+                                    : to_gltf(lights, origin));
 }
 
-VirtualLights read_lights(const std::filesystem::path& path) {
-  return lights_from_json(read_text(path), path.string());
+VirtualLights read_lights(const std::filesystem::path& path, const Vec3& origin) {
+  return lights_from_json(read_text(path), path.string(), origin);
 }
 
 }  // namespace lantern

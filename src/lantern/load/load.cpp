@@ -41,6 +41,25 @@ void apply_unit(Scene& scene, float unit) {
   }
 }
 
+/// Where coordinates are much larger than the scene, their rounding would be seen in the picture:
+/// the middle of the scene becomes the origin.
+void move_near_zero(Scene& scene) {
+  Bounds bounds;
+  for (const Instance& instance : scene.instances) {
+    for (const Vec3& p : scene.meshes[index(instance.mesh)].positions) {
+      bounds.add(Vec3(instance.transform * Vec4(p, 1.0f)));
+    }
+  }
+  constexpr float kFar = 16.0f;  // radii
+  if (bounds.empty() || !(glm::length(bounds.centre()) > kFar * bounds.radius())) return;
+  const Vec3 centre = bounds.centre();
+  if (!is_finite(centre)) return;
+  for (Instance& instance : scene.instances) instance.transform[3] -= Vec4(centre, 0.0f);
+  for (Camera& camera : scene.cameras) camera.eye -= centre;
+  for (PunctualLight& light : scene.lights) light.position -= centre;
+  scene.origin += centre;
+}
+
 bool has_triangles(const Scene& scene) {
   return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
     return !scene.meshes[index(instance.mesh)].triangles.empty();
@@ -65,6 +84,7 @@ Loaded load_scene(const std::filesystem::path& path, const LoadOptions& options)
     loaded.report.warn(std::move(warning));
   }
   if (!has_triangles(loaded.scene)) fail({path.string()}, "has no triangles");
+  move_near_zero(loaded.scene);
   return loaded;
 }
 

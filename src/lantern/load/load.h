@@ -32,6 +32,7 @@ struct Loaded {
   LoadReport report;
 };
 
+/// A scene far from zero, where floats are coarse, is moved near it; Scene::origin tells how far.
 /// Ogre `.mesh.xml` (and `.xml` with a <mesh> root), `.mesh`, `.scene`, and whatever assimp reads.
 Loaded load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 

@@ -96,8 +96,8 @@ Camera choose_camera(const Scene& scene, const World& world, const Tracer& trace
                      const CameraChoice& choice, float aspect) {
   Camera camera;
   if (choice.eye) {
-    camera.eye = *choice.eye;
-    const Vec3 forward = choice.target - camera.eye;
+    camera.eye = *choice.eye - scene.origin;
+    const Vec3 forward = choice.target - *choice.eye;
     camera.forward = glm::normalize(forward);
     camera.up = choice.up;
     camera.vertical_fov = kUsualFov;

@@ -13,7 +13,7 @@ namespace lantern {
 
 struct CameraChoice {
   std::string name;         // of a camera of the scene; empty: its first
-  std::optional<Vec3> eye;  // with `target`: a camera of the user's own
+  std::optional<Vec3> eye;  // with `target`, in the file's coordinates: the user's own camera
   Vec3 target{0.0f};
   Vec3 up{0.0f, 1.0f, 0.0f};          // not on one line with them
   std::optional<float> vertical_fov;  // radians; overrides that of the camera chosen

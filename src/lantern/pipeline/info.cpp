@@ -80,8 +80,8 @@ std::string describe(const Loaded& loaded) {
   line("triangles", fmt::format("{} in {} instances of {} meshes", s.world.size(), s.instances,
                                 scene.meshes.size()));
   if (!s.world.bounds.empty()) {
-    line("bounds",
-         fmt::format("{} to {} m", text_of(s.world.bounds.low), text_of(s.world.bounds.high)));
+    line("bounds", fmt::format("{} to {} m", text_of(s.world.bounds.low + scene.origin),
+                               text_of(s.world.bounds.high + scene.origin)));
   }
   line("reflectivity", fmt::format("{:.4f} (area-weighted mean)", s.reflectivity));
   for (const Material& m : scene.materials) {
@@ -109,7 +109,8 @@ std::string describe(const Loaded& loaded) {
   }
   for (const Camera& c : scene.cameras) {
     line("camera", fmt::format("{}  at {} looking along {}, {:.4g} degrees high", c.name,
-                               text_of(c.eye), text_of(c.forward), glm::degrees(c.vertical_fov)));
+                               text_of(c.eye + scene.origin), text_of(c.forward),
+                               glm::degrees(c.vertical_fov)));
   }
   for (const auto& [what, times] : loaded.report.unknown) {
     line("unknown", fmt::format("{} ({} times)", what, times));
@@ -135,7 +136,8 @@ std::string describe_as_json(const Loaded& loaded) {
               {"unknown", loaded.report.unknown},
               {"warnings", loaded.report.warnings}};
   if (!s.world.bounds.empty()) {
-    out["bounds"] = {{"low", json_of(s.world.bounds.low)}, {"high", json_of(s.world.bounds.high)}};
+    out["bounds"] = {{"low", json_of(s.world.bounds.low + scene.origin)},
+                     {"high", json_of(s.world.bounds.high + scene.origin)}};
   }
   for (const Material& m : scene.materials) {
     Json material = {{"name", m.name},
@@ -161,7 +163,7 @@ std::string describe_as_json(const Loaded& loaded) {
     out["lights"].push_back({{"name", l.name},
                              {"kind", name_of(l.kind)},
                              {"intensity", json_of(l.intensity)},
-                             {"position", json_of(l.position)},
+                             {"position", json_of(l.position + scene.origin)},
                              {"direction", json_of(l.direction)}});
   }
   if (scene.sky) {
@@ -170,7 +172,7 @@ std::string describe_as_json(const Loaded& loaded) {
   }
   for (const Camera& c : scene.cameras) {
     out["cameras"].push_back({{"name", c.name},
-                              {"eye", json_of(c.eye)},
+                              {"eye", json_of(c.eye + scene.origin)},
                               {"forward", json_of(c.forward)},
                               {"up", json_of(c.up)},
                               {"vertical_fov_degrees", glm::degrees(c.vertical_fov)}});

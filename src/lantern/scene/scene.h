@@ -99,6 +99,7 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<PunctualLight> lights;
   std::optional<Sky> sky;
+  Vec3 origin{0.0f};  // of these coordinates, in those of the file
 };
 
 }  // namespace lantern
