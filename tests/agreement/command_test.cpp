@@ -24,6 +24,7 @@
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 namespace lantern {
@@ -444,6 +445,21 @@ TEST_F(CommandTest, FailsInOneLineOnBrokenLights) {
     SCOPED_TRACE(text);
     write_file(folder_ / "l.json", text);
     expect_failure(run(render("a.png", {"--lights-from", path("l.json")})), 1, "l.json");
+  }
+}
+
+TEST_F(CommandTest, SaysInOneLineThatNoOpenGlIsThere) {
+  // No vendor's driver, a library that is none, and only versions that are too old.
+  write_file(folder_ / "libEGL.so.1", std::string_view("no library"));
+  const std::string folder = folder_.path().string();
+  using Variables = std::vector<std::pair<const char*, const char*>>;
+  for (const Variables& variables :
+       {Variables{{"__EGL_VENDOR_LIBRARY_FILENAMES", "/dev/null"}},
+        Variables{{"LD_LIBRARY_PATH", folder.c_str()}},
+        Variables{{"MESA_GL_VERSION_OVERRIDE", "2.1"}, {"MESA_GLES_VERSION_OVERRIDE", "2.0"}}}) {
+    for (const auto& [name, value] : variables) ::setenv(name, value, 1);
+    expect_failure(run({"info", "--gl"}), 1, "no usable OpenGL: ");
+    for (const auto& [name, value] : variables) ::unsetenv(name);
   }
 }
 
