@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/core/file.h"
 #include "lantern/lights/export.h"
+#include "lantern/pipeline/render_instant_radiosity.h"
 
 #include "apps/lantern/commands.h"
 #include "apps/lantern/options.h"

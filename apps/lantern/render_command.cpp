@@ -5,6 +5,7 @@
 #include "lantern/lights/export.h"
 
 #include "apps/lantern/commands.h"
+#include "apps/lantern/methods.h"
 #include "apps/lantern/options.h"
 #include "apps/lantern/terminal.h"
 
@@ -76,29 +77,56 @@ CameraChoice camera_choice(const Arguments& arguments) {
   return choice;
 }
 
-RenderOptions render_options(const Arguments& arguments) {
+/// What several methods share; samples and passes are those given, or 0.
+RenderOptions common_options(const Arguments& arguments) {
   RenderOptions options;
+  options.method = method_of(arguments.method);
   std::tie(options.width, options.height) = parse_size(arguments.size);
-  const bool in_time = arguments.seconds > 0.0;
   options.camera = camera_choice(arguments);
-  options.passes = arguments.passes > 0 ? arguments.passes : in_time ? 0 : 1;
-  if (in_time) options.seconds = arguments.seconds;
+  options.passes = arguments.passes;
+  options.samples = arguments.samples;
+  if (arguments.seconds > 0.0) options.seconds = arguments.seconds;
+  return options;
+}
+
+void add_instant_radiosity(const Arguments& arguments, RenderOptions& options) {
+  const bool in_time = options.seconds.has_value();
+  if (options.passes == 0 && !in_time) options.passes = 1;
   // A single pass is Keller's walk; several gain from choosing among many more lights.
   constexpr std::size_t kPoolOfSeveralPasses = 16;
   options.lights = arguments.lights.options(in_time ? kUsualPathsInTime : kUsualPaths,
                                             options.passes == 1 ? 1 : kPoolOfSeveralPasses);
   // Several passes have a sample each; a single one must smooth its edges by itself.
   constexpr int kSamplesOfSinglePass = 4;
-  options.samples = arguments.samples > 0 ? arguments.samples
-                    : options.passes == 1 ? kSamplesOfSinglePass
-                                          : 1;
+  if (options.samples == 0) options.samples = options.passes == 1 ? kSamplesOfSinglePass : 1;
   // What is compensated may be cut early; what is not must not be missed.
   constexpr float kUsualBound = 20.0f, kUsualBoundCompensated = 5.0f;
   options.bound =
       arguments.bound.value_or(arguments.compensate ? kUsualBoundCompensated : kUsualBound);
   options.compensate = arguments.compensate;
   options.shadow_rays = arguments.single_rays ? ShadowRays::kSingle : ShadowRays::kPackets;
+}
+
+RenderOptions render_options(const Arguments& arguments) {
+  RenderOptions options = common_options(arguments);
+  switch (options.method) {
+    case Method::kInstantRadiosity:
+      add_instant_radiosity(arguments, options);
+      break;
+  }
   return options;
+}
+
+void add_instant_radiosity(const Arguments& arguments, const RenderOptions& options,
+                           const RenderStatistics& statistics, Metadata& metadata) {
+  metadata.insert({{"lights", std::to_string(options.lights.paths)},
+                   {"pool", std::to_string(options.lights.pool)},
+                   {"reflectivity", fmt::format("{}", statistics.reflectivity)},
+                   {"bound", fmt::format("{}", options.bound)},
+                   {"compensate", options.compensate ? "yes" : "no"},
+                   {"sampler", arguments.lights.sampler},
+                   {"jitter", arguments.lights.jitter ? "yes" : "no"}});
+  if (!arguments.lights_from.empty()) metadata["lights-from"] = arguments.lights_from;
 }
 
 Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
@@ -106,15 +134,8 @@ Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
   Metadata metadata = {{"software", std::string("lantern ") + kVersion},
                        {"scene", arguments.scene.path.filename().string()},
                        {"method", arguments.method},
-                       {"lights", std::to_string(options.lights.paths)},
-                       {"pool", std::to_string(options.lights.pool)},
-                       {"reflectivity", fmt::format("{}", statistics.reflectivity)},
                        {"passes", std::to_string(statistics.passes)},
                        {"samples", std::to_string(options.samples)},
-                       {"bound", fmt::format("{}", options.bound)},
-                       {"compensate", options.compensate ? "yes" : "no"},
-                       {"sampler", arguments.lights.sampler},
-                       {"jitter", arguments.lights.jitter ? "yes" : "no"},
                        {"seed", std::to_string(arguments.lights.seed)}};
   // What is not given has its usual value.
   const auto add_given = [&](const char* key, const std::string& value) {
@@ -126,9 +147,13 @@ Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
   add_given("time", arguments.seconds > 0.0 ? fmt::format("{}", arguments.seconds) : "");
   add_given("sky", arguments.scene.sky);
   add_given("emitter", fmt::format("{}", fmt::join(arguments.scene.emitters, " ")));
-  add_given("lights-from", arguments.lights_from);
   add_given("exposure", fmt::format("{}", arguments.exposure));
   add_given("tone", arguments.tone);
+  switch (options.method) {
+    case Method::kInstantRadiosity:
+      add_instant_radiosity(arguments, options, statistics, metadata);
+      break;
+  }
   return metadata;
 }
 
@@ -151,19 +176,13 @@ void print_json(const Rendered& rendered, double seconds_load, double seconds_to
   fmt::print("{}\n", out.dump());
 }
 
-void refuse_what_comes_later(const Arguments& arguments) {
-  if (arguments.method != "instant-radiosity") {
-    throw UsageError(fmt::format("--method {} is not available in this version", arguments.method));
-  }
+void run(const CLI::App& command, Arguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  refuse_options_of_others(command, arguments.method);
   if (arguments.backend != "cpu") {
     throw UsageError(
         fmt::format("--backend {} is not available in this version", arguments.backend));
   }
-}
-
-void run(Arguments& arguments) {
-  const auto start = std::chrono::steady_clock::now();
-  refuse_what_comes_later(arguments);
   arguments.scene.check();
   RenderOptions options = render_options(arguments);
   check_format(arguments.out, require_image_format);
@@ -219,8 +238,7 @@ void add_render(CLI::App& app) {
       ->add_option("--samples", a.samples, "Samples per pixel and pass (4; with several passes 1)")
       ->check(CLI::Range(1, 65536));
   command->add_option("--method", a.method, "How the picture is made")
-      ->check(CLI::IsMember({"instant-radiosity", "path", "radiosity-matrix", "radiosity-hemicube",
-                             "radiosity-progressive", "radiosity-gpu"}))
+      ->check(CLI::IsMember(method_names()))
       ->capture_default_str();
   command->add_option("--backend", a.backend, "cpu or gl")
       ->check(CLI::IsMember({"cpu", "gl"}))
@@ -245,7 +263,7 @@ void add_render(CLI::App& app) {
   command->add_option("--lights-from", a.lights_from, "Lights of a JSON file instead of a walk");
   command->add_flag("--single-rays", a.single_rays, "Shadow rays one by one, for checks");
   command->add_flag("--json", a.json, "Statistics as one JSON object on standard output");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([command, arguments] { run(*command, *arguments); });
 }
 
 }  // namespace lantern::app

@@ -5,7 +5,7 @@
 #include "lantern/lights/export.h"
 #include "lantern/lights/walk.h"
 #include "lantern/load/load.h"
-#include "lantern/pipeline/render.h"
+#include "lantern/pipeline/render_instant_radiosity.h"
 
 #include "tests/analytic/rooms.h"
 #include "tests/support/temporary_folder.h"

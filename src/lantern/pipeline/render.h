@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A loaded scene to a picture: the only module that sees all the others. [Keller 1997]
+// A loaded scene to a picture by any of the methods. A method is a file render_*.cpp of its own;
+// the options and statistics that only some methods know say so.
 #pragma once
 
 #include "lantern/core/parallel.h"
@@ -19,7 +20,11 @@
 
 namespace lantern {
 
-/// How lights are made.
+enum class Method {
+  kInstantRadiosity,  // [Keller 1997]
+};
+
+/// How lights are made (instant radiosity).
 struct LightOptions {
   std::size_t paths = 256;
   std::size_t pool = 1;               // walk so many times the paths and keep as many lights as
@@ -30,25 +35,35 @@ struct LightOptions {
 };
 
 struct RenderOptions {
-  LightOptions lights;
-  const VirtualLights* given_lights = nullptr;  // these, in every pass, instead of a walk
+  Method method = Method::kInstantRadiosity;
   CameraChoice camera;
   int width = 512;
   int height = 512;
-  int samples = 1;
+  int samples = 1;                // per pixel and pass
   std::size_t passes = 1;         // 0: until `seconds` or `stop` end it
   std::optional<double> seconds;  // no pass starts that is not expected to end by then
+
+  // Instant radiosity.
+  LightOptions lights;
+  const VirtualLights* given_lights = nullptr;  // these, in every pass, instead of a walk
   float bound = 0.0f;
   bool compensate = false;
   ShadowRays shadow_rays = ShadowRays::kPackets;
 };
 
+struct RayCounts {
+  std::uint64_t camera_rays = 0;
+  std::uint64_t shadow_rays = 0;
+  std::uint64_t compensation_rays = 0;
+};
+
+/// What a method does not have is zero.
 struct RenderStatistics {
   std::size_t lights = 0;  // of all passes together, like the counts below
   std::size_t paths = 0;
   std::size_t passes = 0;
   float reflectivity = 0.0f;
-  GatherCounts rays;
+  RayCounts rays;
   double seconds_prepare = 0.0;  // world, tree, emitters
   double seconds_lights = 0.0;
   double seconds_gather = 0.0;
@@ -73,9 +88,5 @@ using ProgressReport = std::function<void(const Progress&)>;
 /// later passes count whole or not at all.
 Rendered render(const Scene& scene, const RenderOptions& options, const StopFlag& stop,
                 const ProgressReport& report = {}, double elapsed = 0.0);
-
-/// The lights of pass 0 alone. Warnings are appended.
-VirtualLights make_lights(const Scene& scene, const LightOptions& options,
-                          std::vector<std::string>& warnings);
 
 }  // namespace lantern

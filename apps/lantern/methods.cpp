@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "apps/lantern/methods.h"
+
+#include "apps/lantern/commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace lantern::app {
+namespace {
+
+struct NamedMethod {
+  const char* name;
+  std::optional<Method> method;  // none: not in this version
+};
+constexpr NamedMethod kMethods[] = {
+    {"instant-radiosity", Method::kInstantRadiosity},
+    {"path", std::nullopt},
+    {"radiosity-matrix", std::nullopt},
+    {"radiosity-hemicube", std::nullopt},
+    {"radiosity-progressive", std::nullopt},
+    {"radiosity-gpu", std::nullopt},
+};
+
+/// An option that not every method knows, and those that do.
+struct SpecialOption {
+  const char* name;
+  std::vector<Method> methods;
+};
+const std::vector<SpecialOption>& special_options() {
+  static const std::vector<SpecialOption> options = {
+      {"--lights", {Method::kInstantRadiosity}},
+      {"--reflectivity", {Method::kInstantRadiosity}},
+      {"--pool", {Method::kInstantRadiosity}},
+      {"--sampler", {Method::kInstantRadiosity}},
+      {"--jitter", {Method::kInstantRadiosity}},
+      {"--bound", {Method::kInstantRadiosity}},
+      {"--compensate", {Method::kInstantRadiosity}},
+      {"--lights-from", {Method::kInstantRadiosity}},
+      {"--single-rays", {Method::kInstantRadiosity}},
+  };
+  return options;
+}
+
+}  // namespace
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const NamedMethod& known : kMethods) names.emplace_back(known.name);
+  return names;
+}
+
+Method method_of(const std::string& name) {
+  for (const NamedMethod& known : kMethods) {
+    if (name == known.name && known.method) return *known.method;
+  }
+  throw UsageError(fmt::format("--method {} is not available in this version", name));
+}
+
+void refuse_options_of_others(const CLI::App& command, const std::string& method) {
+  const Method chosen = method_of(method);
+  for (const SpecialOption& option : special_options()) {
+    const bool known =
+        std::find(option.methods.begin(), option.methods.end(), chosen) != option.methods.end();
+    if (!known && command.count(option.name) > 0) {
+      throw UsageError(fmt::format("{} means nothing to --method {}", option.name, method));
+    }
+  }
+}
+
+}  // namespace lantern::app
