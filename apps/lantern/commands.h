@@ -18,5 +18,6 @@ void add_render(CLI::App& app);
 void add_lights(CLI::App& app);
 void add_info(CLI::App& app);
 void add_compare(CLI::App& app);
+void add_bench(CLI::App& app);
 
 }  // namespace lantern::app

@@ -34,8 +34,8 @@ int run(int argc, char** argv) {
   lantern::app::add_lights(app);
   lantern::app::add_info(app);
   lantern::app::add_compare(app);
+  lantern::app::add_bench(app);
   add_later(app, "view", "Open a scene in a window (not in this version)");
-  add_later(app, "bench", "Measure methods against each other (not in this version)");
   try {
     app.parse(argc, argv);
     return 0;

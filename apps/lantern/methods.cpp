@@ -52,6 +52,14 @@ std::vector<std::string> method_names() {
   return names;
 }
 
+std::vector<std::string> available_methods() {
+  std::vector<std::string> names;
+  for (const NamedMethod& known : kMethods) {
+    if (known.method) names.emplace_back(known.name);
+  }
+  return names;
+}
+
 Method method_of(const std::string& name) {
   for (const NamedMethod& known : kMethods) {
     if (name == known.name && known.method) return *known.method;

@@ -14,6 +14,9 @@ namespace lantern::app {
 /// What --method takes, also what is not in this version.
 std::vector<std::string> method_names();
 
+/// Those that are in this version.
+std::vector<std::string> available_methods();
+
 /// Throws UsageError for a method that is not in this version.
 Method method_of(const std::string& name);
 

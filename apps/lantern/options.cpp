@@ -63,6 +63,33 @@ Loaded SceneArguments::load_scene_now() const {
   return loaded;
 }
 
+void CameraArguments::add_to(CLI::App& command) {
+  command.add_option("--camera", name, "Name of a camera of the scene");
+  command.add_option("--look-at", look_at, "ex,ey,ez,tx,ty,tz[,ux,uy,uz]: eye, target, up");
+  command.add_option("--fov", fov, "Vertical field of view in degrees")->check(finite(0.01, 179.0));
+}
+
+CameraChoice CameraArguments::choice() const {
+  CameraChoice camera;
+  camera.name = name;
+  if (fov > 0.0f) camera.vertical_fov = glm::radians(fov);
+  if (look_at.empty()) return camera;
+  try {
+    const std::vector<float> v = parse_numbers(look_at);
+    if (v.size() != 6 && v.size() != 9) throw std::invalid_argument("needs 6 or 9 numbers");
+    camera.eye = Vec3(v[0], v[1], v[2]);
+    camera.target = Vec3(v[3], v[4], v[5]);
+    if (v.size() == 9) camera.up = Vec3(v[6], v[7], v[8]);
+    const Vec3 right = glm::cross(camera.target - *camera.eye, camera.up);
+    if (!(glm::dot(right, right) > 0.0f)) {
+      throw std::invalid_argument("eye, target and up must not lie on one line");
+    }
+  } catch (const std::invalid_argument& e) {
+    throw UsageError(std::string("--look-at: ") + e.what());
+  }
+  return camera;
+}
+
 void LightArguments::add_to(CLI::App& command) {
   command.add_option("--lights", paths, "Light paths started in a pass")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));

@@ -38,6 +38,17 @@ struct SceneArguments {
   std::optional<SkyEdit> sky_;
 };
 
+/// Which camera.
+struct CameraArguments {
+  std::string name;
+  std::string look_at;
+  float fov = 0.0f;  // degrees; 0: not given
+
+  void add_to(CLI::App& command);
+  /// Throws UsageError.
+  CameraChoice choice() const;
+};
+
 /// How lights are made.
 struct LightArguments {
   std::size_t paths = 0;  // 0: not given

@@ -32,9 +32,7 @@ struct Arguments {
   int samples = 0;         // 0: not given
   std::string method = "instant-radiosity";
   std::string backend = "cpu";
-  std::string camera;
-  std::string look_at;
-  float fov = 0.0f;  // 0: not given
+  CameraArguments camera;
   std::optional<float> bound;
   bool compensate = false;
   float exposure = 0.0f;
@@ -56,33 +54,12 @@ std::uint64_t peak_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * kKibibyte;
 }
 
-CameraChoice camera_choice(const Arguments& arguments) {
-  CameraChoice choice;
-  choice.name = arguments.camera;
-  if (arguments.fov > 0.0f) choice.vertical_fov = glm::radians(arguments.fov);
-  if (arguments.look_at.empty()) return choice;
-  try {
-    const std::vector<float> v = parse_numbers(arguments.look_at);
-    if (v.size() != 6 && v.size() != 9) throw std::invalid_argument("needs 6 or 9 numbers");
-    choice.eye = Vec3(v[0], v[1], v[2]);
-    choice.target = Vec3(v[3], v[4], v[5]);
-    if (v.size() == 9) choice.up = Vec3(v[6], v[7], v[8]);
-    const Vec3 right = glm::cross(choice.target - *choice.eye, choice.up);
-    if (!(glm::dot(right, right) > 0.0f)) {
-      throw std::invalid_argument("eye, target and up must not lie on one line");
-    }
-  } catch (const std::invalid_argument& e) {
-    throw UsageError(std::string("--look-at: ") + e.what());
-  }
-  return choice;
-}
-
 /// What several methods share; samples and passes are those given, or 0.
 RenderOptions common_options(const Arguments& arguments) {
   RenderOptions options;
   options.method = method_of(arguments.method);
   std::tie(options.width, options.height) = parse_size(arguments.size);
-  options.camera = camera_choice(arguments);
+  options.camera = arguments.camera.choice();
   options.passes = arguments.passes;
   options.samples = arguments.samples;
   if (arguments.seconds > 0.0) options.seconds = arguments.seconds;
@@ -141,9 +118,10 @@ Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
   const auto add_given = [&](const char* key, const std::string& value) {
     if (!value.empty()) metadata[key] = value;
   };
-  add_given("camera", arguments.camera);
-  add_given("look-at", arguments.look_at);
-  add_given("fov", arguments.fov > 0.0f ? fmt::format("{}", arguments.fov) : "");
+  const CameraArguments& camera = arguments.camera;
+  add_given("camera", camera.name);
+  add_given("look-at", camera.look_at);
+  add_given("fov", camera.fov > 0.0f ? fmt::format("{}", camera.fov) : "");
   add_given("time", arguments.seconds > 0.0 ? fmt::format("{}", arguments.seconds) : "");
   add_given("sky", arguments.scene.sky);
   add_given("emitter", fmt::format("{}", fmt::join(arguments.scene.emitters, " ")));
@@ -243,10 +221,7 @@ void add_render(CLI::App& app) {
   command->add_option("--backend", a.backend, "cpu or gl")
       ->check(CLI::IsMember({"cpu", "gl"}))
       ->capture_default_str();
-  command->add_option("--camera", a.camera, "Name of a camera of the scene");
-  command->add_option("--look-at", a.look_at, "ex,ey,ez,tx,ty,tz[,ux,uy,uz]: eye, target, up");
-  command->add_option("--fov", a.fov, "Vertical field of view in degrees")
-      ->check(finite(0.01, 179.0));
+  a.camera.add_to(*command);
   command
       ->add_option(
           "--bound", a.bound,

@@ -228,6 +228,36 @@ TEST_F(CommandTest, CompareDrawsTheDifference) {
   expect_failure(compare_to({"--pixels-per-degree", "0"}), 2);
 }
 
+TEST_F(CommandTest, MeasuresConvergence) {
+  write_image(folder_ / "reference.pfm", Image(8, 6, Rgb(2.0f)));  // what the furnace's file says
+  const auto bench = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"bench", "convergence", own("furnace.scene"), "--reference",
+                               path("reference.pfm"), "--methods", "instant-radiosity"});
+    return run(more);
+  };
+  const Outcome outcome =
+      bench({"--lights", "16,64", "--seconds", "0.1", "-o", path("c.csv"), "-o", path("c.svg")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const std::string csv = read_text(folder_ / "c.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4);
+  EXPECT_THAT(csv, HasSubstr("\ninstant-radiosity,seconds,0.1,"));
+  EXPECT_THAT(csv, HasSubstr("\ninstant-radiosity,lights,64,"));
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 4);
+  EXPECT_THAT(read_text(folder_ / "c.svg"), testing::StartsWith("<svg "));
+  expect_failure(bench({"-o", path("c.txt")}), 1, "c.txt");
+  expect_failure(bench({"--lights", "0"}), 2, "--lights");
+  expect_failure(bench({"--seconds", "1,soon"}), 2, "--seconds");
+  expect_failure(
+      run({"bench", "convergence", own("furnace.scene"), "--reference", path("none.exr")}), 1,
+      "none.exr");
+  expect_failure(run({"bench", "convergence", own("furnace.scene")}), 2, "--reference");
+  expect_failure(run({"bench", "convergence", own("furnace.scene"), "--reference",
+                      path("reference.pfm"), "--methods", "guess"}),
+                 2, "guess");
+  expect_failure(run({"bench"}), 2);
+}
+
 TEST_F(CommandTest, InfoTellsWhatIsThere) {
   const Outcome outcome = run({"info", own("cornell_box.scene"), "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;

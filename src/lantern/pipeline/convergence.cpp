@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "lantern/pipeline/convergence.h"
+
+#include "lantern/pipeline/chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <sys/resource.h>
+
+namespace lantern {
+namespace {
+
+double processor_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+const char* name(Effort effort) { return effort == Effort::kSeconds ? "seconds" : "lights"; }
+
+/// A series per method, in the order in which they first appear.
+Chart chart_of(std::span<const ConvergencePoint> points, Effort effort, const std::string& scene) {
+  Chart chart;
+  chart.title = effort == Effort::kSeconds ? scene + ": error over time"
+                                           : scene + ": error over the lights of one pass";
+  chart.x_label = name(effort);
+  chart.y_label = "relmse";
+  for (const ConvergencePoint& point : points) {
+    if (point.run.effort != effort) continue;
+    auto series = std::find_if(chart.series.begin(), chart.series.end(),
+                               [&](const Series& s) { return s.name == point.run.method; });
+    if (series == chart.series.end()) {
+      series = chart.series.insert(series, {point.run.method, {}});
+    }
+    const double x =
+        effort == Effort::kSeconds ? point.seconds : static_cast<double>(point.statistics.lights);
+    series->points.emplace_back(x, point.error.relmse);
+  }
+  return chart;
+}
+
+}  // namespace
+
+ConvergencePoint measure(const Scene& scene, const ConvergenceRun& run, const Image& reference,
+                         const FlipOptions& flip_with, const StopFlag& stop) {
+  ConvergencePoint point;
+  point.run = run;
+  point.run.options.width = reference.width;
+  point.run.options.height = reference.height;
+  const double processor_before = processor_seconds();
+  const auto start = std::chrono::steady_clock::now();
+  const Rendered rendered = render(scene, point.run.options, stop);
+  point.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  point.processor_seconds = processor_seconds() - processor_before;
+  point.statistics = rendered.statistics;
+  point.error = compare(rendered.image, reference);
+  point.flip = flip(rendered.image, reference, flip_with).mean;
+  return point;
+}
+
+std::string to_csv(std::span<const ConvergencePoint> points) {
+  std::string out =
+      "method,effort,asked,seconds,processor_seconds,passes,lights,rmse,relmse,flip,"
+      "mean_r,mean_g,mean_b,reference_r,reference_g,reference_b\n";
+  for (const ConvergencePoint& p : points) {
+    const Comparison& e = p.error;
+    fmt::format_to(std::back_inserter(out),
+                   "{},{},{:g},{:.4f},{:.4f},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},"
+                   "{:.6g},{:.6g},{:.6g}\n",
+                   p.run.method, name(p.run.effort), p.run.asked, p.seconds, p.processor_seconds,
+                   p.statistics.passes, p.statistics.lights, e.rmse, e.relmse, p.flip, e.mean_a.r,
+                   e.mean_a.g, e.mean_a.b, e.mean_b.r, e.mean_b.g, e.mean_b.b);
+  }
+  return out;
+}
+
+std::string to_svg(std::span<const ConvergencePoint> points, const std::string& scene) {
+  std::vector<Chart> charts;
+  for (const Effort effort : {Effort::kSeconds, Effort::kLights}) {
+    Chart chart = chart_of(points, effort, scene);
+    if (!chart.series.empty()) charts.push_back(std::move(chart));
+  }
+  return to_svg(charts);
+}
+
+}  // namespace lantern
