@@ -4,7 +4,7 @@
 #include "lantern/lights/export.h"
 #include "lantern/load/load.h"
 #include "lantern/pipeline/edits.h"
-#include "lantern/pipeline/render.h"
+#include "lantern/pipeline/render_instant_radiosity.h"
 
 #include "tests/support/temporary_folder.h"
 
