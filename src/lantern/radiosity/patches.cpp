@@ -90,8 +90,8 @@ Means means_of(const Scene& scene, const World& world, const PatchMesh::Face& fa
 }
 
 /// The share of a side that no solid covers.
-double exposed_share(const World& world, const std::vector<bool>& lit_back, const Tracer& tracer,
-                     const Patches& patches, std::size_t element) {
+double exposed_share(const World& world, const Tracer& tracer, const Patches& patches,
+                     std::size_t element) {
   const PatchMesh::Face& face = patches.mesh.faces[patches.patch[element]];
   const uvec3 v = world.triangles[face.source];
   const Vec3 normal(patches.element_normal(element));
@@ -101,7 +101,7 @@ double exposed_share(const World& world, const std::vector<bool>& lit_back, cons
       const Vec3 position = world.positions[v.x] * (1.0f - place.x - place.y) +
                             world.positions[v.y] * place.x + world.positions[v.z] * place.y;
       const std::uint64_t key = hash(element, static_cast<std::uint64_t>(count++));
-      if (!is_covered(world, lit_back, tracer, position, normal, key)) ++open;
+      if (!is_covered(world, patches.lit_back, tracer, position, normal, key)) ++open;
     });
     return static_cast<double>(open) / count;
   };
@@ -151,7 +151,8 @@ Patches make_patches(const Scene& scene, const World& world, const Tracer& trace
   });
   require_reflectance_below_one(scene, world, patches);
 
-  const std::vector<bool> lit_back = lit_backs(scene, world, make_patch_mesh(world), tracer);
+  patches.lit_back = lit_backs(scene, world, make_patch_mesh(world), tracer);
+  const std::vector<bool>& lit_back = patches.lit_back;
   for (std::size_t i = 0; i < count; ++i) {
     if (!lit_back[patches.mesh.faces[i].source]) continue;
     patches.back[i] = static_cast<std::uint32_t>(patches.elements());
@@ -161,7 +162,7 @@ Patches make_patches(const Scene& scene, const World& world, const Tracer& trace
   patches.exposed.assign(patches.elements(), 1.0);
   if (std::find(lit_back.begin(), lit_back.end(), false) != lit_back.end()) {
     parallel_for(patches.elements(), kGrain, [&](std::size_t e) {
-      patches.exposed[e] = exposed_share(world, lit_back, tracer, patches, e);
+      patches.exposed[e] = exposed_share(world, tracer, patches, e);
     });
   }
   SmoothVertices smooth = smooth_vertices(world, patches.mesh);

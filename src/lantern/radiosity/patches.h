@@ -39,6 +39,9 @@ struct Patches {
   std::vector<uvec3> smooth_vertices;
   std::size_t smooth_vertex_count = 0;
 
+  // Per triangle of the world: whether light can come to its back.
+  std::vector<bool> lit_back;
+
   // Per element.
   std::vector<std::uint32_t> patch;
   std::vector<glm::dvec3> emission;  // radiosity that leaves by itself: π times the mean radiance

@@ -12,6 +12,12 @@
 
 namespace lantern {
 
+/// The unit square to directions about +z with density cos θ / π.
+inline Vec3 cosine_direction(Vec2 u) {
+  const float r = std::sqrt(u.x), angle = 2.0f * kPi * u.y;
+  return {r * std::cos(angle), r * std::sin(angle), std::sqrt(1.0f - u.x)};
+}
+
 /// A counter that is hashed with its key: the same key, the same numbers.
 class Random {
  public:
@@ -25,14 +31,14 @@ class Random {
   }
   /// Barycentric weights of the second and third vertex, uniform.
   Vec2 in_triangle() {
-    const Vec2 u(unit(), unit());
+    const float x = unit(), y = unit();
+    const Vec2 u(x, y);
     return u.x + u.y < 1.0f ? u : 1.0f - u;
   }
   /// About +z, with density cos θ / π.
   Vec3 cosine_direction() {
-    const float square = unit(), angle = 2.0f * kPi * unit();
-    const float r = std::sqrt(square);
-    return {r * std::cos(angle), r * std::sin(angle), std::sqrt(1.0f - square)};
+    const float x = unit(), y = unit();
+    return lantern::cosine_direction(Vec2(x, y));
   }
 
  private:
