@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: MIT
+#include "lantern/raster/edge_list.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace lantern {
+namespace {
+
+using glm::dvec3;
+
+/// Planes are this exact: the distance by which shadow rays are kept off surfaces.
+float rounding_of(const World& world) { return 0x1p-18f * world.coordinate_scale(); }
+
+float signed_distance(const Vec4& plane, const Vec3& p) {
+  return glm::dot(Vec3(plane), p) + plane.w;
+}
+
+bool lies_in(const Vec4& plane, const Vec3& p, float rounding) {
+  return std::abs(signed_distance(plane, p)) <= rounding;
+}
+
+/// The plane through the triangle that has the whole scene on one side; w = NaN: there is none.
+Vec4 supporting_plane(const World& world, std::uint32_t triangle, float rounding) {
+  const Vec3 normal = glm::normalize(world.area_vector(triangle));
+  const Vec4 plane(normal, -glm::dot(normal, world.positions[world.triangles[triangle].x]));
+  bool before = true, behind = true;
+  for (const uvec3& t : world.triangles) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const float distance = signed_distance(plane, world.positions[t[corner]]);
+      before &= distance >= -rounding;
+      behind &= distance <= rounding;
+    }
+    if (!before && !behind) return Vec4(std::nanf(""));
+  }
+  return before ? plane : -plane;
+}
+
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), 0u);
+  }
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  /// The smaller representative stays, so that the order of parts is that of the triangles.
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = find(a), b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+}  // namespace
+
+std::vector<Vec4> find_walls(const World& world) {
+  // A wall's number is a bit of a mask. Only large triangles are worth the search.
+  constexpr std::size_t kMostWalls = 32, kMostCandidates = 512;
+  std::vector<std::uint32_t> order(world.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::vector<float> areas(world.size());
+  for (std::uint32_t t = 0; t < world.size(); ++t) areas[t] = world.area(t);
+  const auto larger = [&](std::uint32_t a, std::uint32_t b) {
+    return std::tie(areas[b], a) < std::tie(areas[a], b);
+  };
+  const std::size_t candidates = std::min(kMostCandidates, order.size());
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(candidates),
+                    order.end(), larger);
+  const float rounding = rounding_of(world);
+  std::vector<Vec4> walls;
+  for (std::size_t i = 0; i < candidates && walls.size() < kMostWalls; ++i) {
+    const uvec3 t = world.triangles[order[i]];
+    const bool known = std::any_of(walls.begin(), walls.end(), [&](const Vec4& wall) {
+      return lies_in(wall, world.positions[t.x], rounding) &&
+             lies_in(wall, world.positions[t.y], rounding) &&
+             lies_in(wall, world.positions[t.z], rounding);
+    });
+    if (known) continue;
+    const Vec4 plane = supporting_plane(world, order[i], rounding);
+    if (!std::isnan(plane.w)) walls.push_back(plane);
+  }
+  return walls;
+}
+
+bool is_inside(std::span<const Vec4> walls, const LightPoint& point) {
+  return std::all_of(walls.begin(), walls.end(),
+                     [&](const Vec4& wall) { return glm::dot(wall, point) >= 0.0f; });
+}
+
+EdgeList::EdgeList(const World& world, std::span<const Vec4> walls) {
+  assert(walls.size() <= 32);
+  weld(world);
+  const float rounding = rounding_of(world);
+  std::vector<std::uint32_t> masks(vertices_.size(), 0u);
+  for (std::size_t v = 0; v < vertices_.size(); ++v) {
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+      if (lies_in(walls[w], vertices_[v], rounding)) masks[v] |= 1u << w;
+    }
+  }
+  std::erase_if(casters_,
+                [&](const uvec3& t) { return (masks[t.x] & masks[t.y] & masks[t.z]) != 0; });
+  find_edges(masks);
+  sort_by_part();
+  for (const uvec3& t : casters_) {
+    const dvec3 a(vertices_[t.x]);
+    const dvec3 normal = glm::cross(dvec3(vertices_[t.y]) - a, dvec3(vertices_[t.z]) - a);
+    planes_.emplace_back(Vec3(normal), static_cast<float>(-glm::dot(normal, a)));
+  }
+}
+
+void EdgeList::weld(const World& world) {
+  std::vector<std::uint32_t> order(world.positions.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto key = [&](std::uint32_t i) {
+    const Vec3& p = world.positions[i];
+    return std::tuple(p.x, p.y, p.z);
+  };
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  std::vector<std::uint32_t> welded(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i == 0 || key(order[i]) != key(order[i - 1])) {
+      vertices_.push_back(world.positions[order[i]]);
+    }
+    welded[order[i]] = static_cast<std::uint32_t>(vertices_.size() - 1);
+  }
+  for (const uvec3& t : world.triangles) {
+    casters_.emplace_back(welded[t.x], welded[t.y], welded[t.z]);
+  }
+}
+
+void EdgeList::find_edges(std::span<const std::uint32_t> wall_masks) {
+  struct Side {
+    std::uint32_t a, b, face;
+    auto operator<=>(const Side&) const = default;
+  };
+  std::vector<Side> sides;
+  sides.reserve(3 * casters_.size());
+  for (std::uint32_t t = 0; t < casters_.size(); ++t) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const std::uint32_t from = casters_[t][corner], to = casters_[t][(corner + 1) % 3];
+      if ((wall_masks[from] & wall_masks[to]) != 0) continue;
+      sides.push_back({std::min(from, to), std::max(from, to), 2 * t + (from < to ? 0u : 1u)});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  for (const Side& side : sides) {
+    if (edges_.empty() || edges_.back().a != side.a || edges_.back().b != side.b) {
+      edges_.push_back({side.a, side.b, static_cast<std::uint32_t>(faces_.size())});
+    }
+    faces_.push_back(side.face);
+  }
+}
+
+void EdgeList::sort_by_part() {
+  const auto end_of = [&](std::size_t e) {
+    return e + 1 < edges_.size() ? edges_[e + 1].first : static_cast<std::uint32_t>(faces_.size());
+  };
+  Sets sets(casters_.size());
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    for (std::uint32_t f = edges_[e].first + 1; f < end_of(e); ++f) {
+      sets.join(faces_[f - 1] / 2, faces_[f] / 2);
+    }
+  }
+  std::vector<std::uint8_t> odd(casters_.size(), 0);
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    if ((end_of(e) - edges_[e].first) % 2 != 0) odd[sets.find(faces_[edges_[e].first] / 2)] = 1;
+  }
+
+  const auto part_of = [&](std::uint32_t caster) {
+    const std::uint32_t root = sets.find(caster);
+    return std::tuple(odd[root] == 0, root);
+  };
+  std::vector<std::uint32_t> order(casters_.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return part_of(a) < part_of(b); });
+  std::vector<std::uint32_t> place(order.size());
+  std::vector<uvec3> sorted;
+  std::vector<Bounds> bounds;
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    place[order[i]] = i;
+    sorted.push_back(casters_[order[i]]);
+    if (i == 0 || part_of(order[i]) != part_of(order[i - 1])) {
+      parts_.push_back({i, 0, std::get<0>(part_of(order[i])), Vec3(0.0f), 0.0f});
+      bounds.emplace_back();
+    }
+    ++parts_.back().casters;
+    for (int corner = 0; corner < 3; ++corner) bounds.back().add(vertices_[sorted[i][corner]]);
+  }
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    parts_[p].centre = bounds[p].centre();
+    parts_[p].radius = bounds[p].radius();
+  }
+
+  std::vector<Edge> edges;
+  std::vector<std::uint32_t> faces;
+  for (const bool even : {false, true}) {
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      if (std::get<0>(part_of(faces_[edges_[e].first] / 2)) != even) continue;
+      edges.push_back({edges_[e].a, edges_[e].b, static_cast<std::uint32_t>(faces.size())});
+      for (std::uint32_t f = edges_[e].first; f < end_of(e); ++f) {
+        faces.push_back(2 * place[faces_[f] / 2] + faces_[f] % 2);
+      }
+    }
+    if (!even) odd_edges_ = edges.size();
+  }
+  edges_ = std::move(edges);
+  faces_ = std::move(faces);
+  casters_ = std::move(sorted);
+}
+
+std::vector<std::int8_t> EdgeList::facing(const LightPoint& light) const {
+  std::vector<std::int8_t> signs(planes_.size());
+  for (std::size_t t = 0; t < planes_.size(); ++t) {
+    const Vec4& p = planes_[t];
+    const float side = p.x * light.x + p.y * light.y + p.z * light.z + p.w * light.w;
+    signs[t] = side >= 0.0f ? std::int8_t{1} : std::int8_t{-1};
+  }
+  return signs;
+}
+
+/// Which side of the line from eye to light the edge passes on; the same, turned round, for the
+/// triangle on its other side, so that a line through an edge crosses one of the two.
+int EdgeList::side_of_edge(std::uint32_t from, std::uint32_t to, const LightPoint& light,
+                           const Vec3& eye) const {
+  const dvec3 e(eye);
+  const dvec3 a = dvec3(vertices_[std::min(from, to)]) - e;
+  const dvec3 b = dvec3(vertices_[std::max(from, to)]) - e;
+  const dvec3 towards_light = dvec3(light) - static_cast<double>(light.w) * e;
+  const int side = glm::dot(glm::cross(a, b), towards_light) >= 0.0 ? 1 : -1;
+  return from < to ? side : -side;
+}
+
+/// 1: the way from the light to the eye goes through the triangle from its front to its back; -1
+/// the other way; 0: not at all. Light and eye must be on either side of its plane.
+int EdgeList::signed_crossing(std::uint32_t caster, const LightPoint& light,
+                              const Vec3& eye) const {
+  const uvec3 t = casters_[caster];
+  const int side = side_of_edge(t.x, t.y, light, eye);
+  if (side_of_edge(t.y, t.z, light, eye) != side) return 0;
+  return side_of_edge(t.z, t.x, light, eye) == side ? side : 0;
+}
+
+ShadowVolumes EdgeList::volumes(const LightPoint& light, const Vec3& eye, VolumeCount count) const {
+  const std::vector<std::int8_t> light_side = facing(light);
+  ShadowVolumes result;
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    const std::uint32_t end =
+        e + 1 < edges_.size() ? edges_[e + 1].first : static_cast<std::uint32_t>(faces_.size());
+    int times = 0;
+    for (std::uint32_t f = edges_[e].first; f < end; ++f) {
+      const int side = light_side[faces_[f] / 2];
+      times += faces_[f] % 2 == 0 ? side : -side;
+    }
+    if (e >= odd_edges_ && count == VolumeCount::kHalved) times /= 2;
+    for (; times > 0; --times) result.edges.push_back({edges_[e].a, edges_[e].b});
+    for (; times < 0; ++times) result.edges.push_back({edges_[e].b, edges_[e].a});
+  }
+
+  const Vec3 towards_light = Vec3(light) - light.w * eye;
+  const float length_squared = glm::dot(towards_light, towards_light);
+  for (const Part& part : parts_) {
+    const Vec3 off_line = glm::cross(part.centre - eye, towards_light);
+    constexpr float kSlack = 1.001f;  // rounding of this test, not of the next
+    if (glm::dot(off_line, off_line) > kSlack * part.radius * part.radius * length_squared) {
+      continue;
+    }
+    int part_count = 0;
+    for (std::uint32_t t = part.first_caster; t < part.first_caster + part.casters; ++t) {
+      const Vec4& plane = planes_[t];
+      const double eye_side = glm::dot(dvec3(plane), dvec3(eye) - dvec3(vertices_[casters_[t].x]));
+      if ((eye_side >= 0.0) == (light_side[t] > 0)) continue;
+      part_count += light_side[t] * signed_crossing(t, light, eye);
+    }
+    if (part.even && count == VolumeCount::kHalved) {
+      // An odd count of triangles at the eye is an odd one, so never none, wherever it looks.
+      result.dark |= part_count % 2 != 0;
+      part_count /= 2;
+    }
+    result.eye_count += part_count;
+  }
+  return result;
+}
+
+bool is_clear_of(const EdgeList& list, const ShadowVolumes& volumes, const LightPoint& light,
+                 const Vec3& eye, float distance) {
+  const dvec3 e(eye), l(light);
+  const double w = light.w;
+  for (const VolumeEdge& edge : volumes.edges) {
+    // The quad's plane holds the two ways down from the edge's ends.
+    const dvec3 a(list.vertices()[edge.from]), b(list.vertices()[edge.to]);
+    const dvec3 down_a = w * a - l, down_b = w * b - l, down_e = w * e - l;
+    const dvec3 normal = w != 0.0 ? glm::cross(down_a, down_b) : glm::cross(l, b - a);
+    const double off = glm::dot(normal, e - a);
+    if (off * off > static_cast<double>(distance) * distance * glm::dot(normal, normal)) continue;
+    const bool between = w == 0.0 || (glm::dot(glm::cross(down_a, down_e), normal) >= 0.0 &&
+                                      glm::dot(glm::cross(down_e, down_b), normal) >= 0.0);
+    if (between) return false;
+  }
+  return true;
+}
+
+}  // namespace lantern

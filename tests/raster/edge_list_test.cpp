@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: MIT
+// Shadow volumes without GL. What is shown of every kind of mesh: the count at a point, taken from
+// the eye's and the quads on the way there, is that of the triangles between light and point, each
+// of them tried in double precision.
+#include "lantern/raster/edge_list.h"
+
+#include "lantern/core/hash.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace lantern {
+namespace {
+
+using glm::dvec3;
+using ::testing::SizeIs;
+
+class Numbers {
+ public:
+  explicit Numbers(std::uint64_t seed) : seed_(seed) {}
+  float in(float low, float high) {
+    return low + (high - low) * to_unit_float(hash(seed_, next_++));
+  }
+  Vec3 in_box(float half) {
+    const float x = in(-half, half), y = in(-half, half);
+    return {x, y, in(-half, half)};
+  }
+
+ private:
+  std::uint64_t seed_;
+  std::uint64_t next_ = 0;
+};
+
+void add(Scene& scene, std::vector<Vec3> positions, std::vector<uvec3> triangles,
+         const Mat4& transform = Mat4(1.0f)) {
+  if (scene.materials.empty()) scene.materials.emplace_back();
+  Instance instance;
+  instance.mesh = static_cast<MeshId>(scene.meshes.size());
+  instance.transform = transform;
+  Mesh mesh;
+  mesh.positions = std::move(positions);
+  mesh.triangles = std::move(triangles);
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back(instance);
+}
+
+const std::vector<Vec3> kTetrahedron = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+const std::vector<uvec3> kTetrahedronFaces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+
+Scene tetrahedron() {
+  Scene scene;
+  add(scene, kTetrahedron, kTetrahedronFaces);
+  return scene;
+}
+
+Scene open_quad() {
+  Scene scene;
+  add(scene, {{-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}}, {{0, 1, 2}, {0, 2, 3}});
+  return scene;
+}
+
+/// Three triangles that meet in an edge, the third one turned against the others.
+Scene fan_of_three() {
+  Scene scene;
+  add(scene, {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {-0.5f, 0.8f, 0}, {-0.5f, -0.8f, 0}},
+      {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}});
+  return scene;
+}
+
+/// A tetrahedron and its mirror image, face on face: their common face is there twice, and edges
+/// have four triangles.
+Scene mirrored_twins() {
+  Scene scene = tetrahedron();
+  add(scene, kTetrahedron, kTetrahedronFaces, glm::scale(Mat4(1.0f), Vec3(-1.0f, 1.0f, 1.0f)));
+  return scene;
+}
+
+/// Both sides of a quad as triangles of their own.
+Scene doubled_quad() {
+  Scene scene = open_quad();
+  scene.meshes[0].triangles.insert(scene.meshes[0].triangles.end(), {{0, 2, 1}, {0, 3, 2}});
+  return scene;
+}
+
+/// Triangles through each other, half of them sharing vertices in all orders, and a closed mesh.
+Scene soup() {
+  Scene scene = tetrahedron();
+  Numbers numbers(7);
+  std::vector<Vec3> positions;
+  std::vector<uvec3> triangles;
+  for (int i = 0; i < 12; ++i) positions.push_back(numbers.in_box(1.0f));
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    uvec3 t;
+    for (int corner = 0; corner < 3; ++corner) {
+      t[corner] = static_cast<std::uint32_t>(hash(i, static_cast<std::uint64_t>(corner)) % 12);
+    }
+    if (t.x != t.y && t.y != t.z && t.z != t.x) triangles.push_back(t);
+  }
+  add(scene, positions, triangles);
+  return scene;
+}
+
+/// A box without a floor on a floor in a room whose walls have no thickness.
+Scene furnished_room() {
+  Scene scene;
+  const std::vector<Vec3> corners = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
+                                     {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
+  std::vector<uvec3> sides = {{4, 5, 6}, {4, 6, 7}, {1, 0, 3}, {1, 3, 2}, {5, 1, 2},
+                              {5, 2, 6}, {0, 4, 7}, {0, 7, 3}, {7, 6, 2}, {7, 2, 3}};
+  const Mat4 low = glm::translate(Mat4(1.0f), Vec3(0.1f, -2.0f, 0.2f));
+  add(scene, corners, sides, glm::rotate(low, 0.3f, Vec3(0, 1, 0)));
+  std::vector<uvec3> walls = sides;
+  walls.insert(walls.end(), {{0, 1, 5}, {0, 5, 4}});
+  add(scene, corners, walls, glm::scale(Mat4(1.0f), Vec3(3.0f)));
+  return scene;
+}
+
+double determinant(const dvec3& a, const dvec3& b, const dvec3& c) {
+  return glm::dot(a, glm::cross(b, c));
+}
+
+/// 1 if the segment crosses the triangle from its front, -1 from its back, 0 not at all.
+int crossing(const World& world, std::uint32_t triangle, const dvec3& from, const dvec3& to) {
+  const uvec3 v = world.triangles[triangle];
+  const dvec3 a(world.positions[v.x]), b(world.positions[v.y]), c(world.positions[v.z]);
+  const dvec3 normal = glm::cross(b - a, c - a);
+  const bool front = glm::dot(normal, from - a) > 0.0;
+  if (front == (glm::dot(normal, to - a) > 0.0)) return 0;
+  const dvec3 way = to - from;
+  const bool ab = determinant(a - from, b - from, way) > 0.0;
+  const bool bc = determinant(b - from, c - from, way) > 0.0;
+  const bool ca = determinant(c - from, a - from, way) > 0.0;
+  if (ab != bc || bc != ca) return 0;
+  return front ? 1 : -1;
+}
+
+/// Where shadow rays to the light end.
+dvec3 end_at(const LightPoint& light, const dvec3& point) {
+  constexpr double kFar = 1e3;
+  return light.w != 0.0f ? dvec3(light) : point + kFar * dvec3(light);
+}
+
+int blockers(const World& world, const LightPoint& light, const dvec3& point) {
+  int count = 0;
+  for (std::uint32_t t = 0; t < world.size(); ++t) {
+    count += std::abs(crossing(world, t, point, end_at(light, point)));
+  }
+  return count;
+}
+
+/// 1 if the segment enters a volume through this quad, -1 if it leaves one, 0 if it passes by.
+int quad_crossing(const EdgeList& list, const VolumeEdge& edge, const LightPoint& light,
+                  const dvec3& from, const dvec3& to) {
+  const dvec3 a(list.vertices()[edge.from]), b(list.vertices()[edge.to]), l(light);
+  const double w = light.w;
+  const dvec3 down_a = w * a - l, down_b = w * b - l, way = to - from;
+  // A point of the plane lies in the quad where it is on the quad's side of its three edges.
+  const dvec3 outward = glm::cross(a - b, down_a);
+  const double before = glm::dot(outward, from - a), after = glm::dot(outward, to - a);
+  if ((before > 0.0) == (after > 0.0)) return 0;
+  const dvec3 p = from + way * (before / (before - after));
+  if (glm::dot(glm::cross(down_a, p - a), outward) * glm::dot(glm::cross(down_a, b - a), outward) <
+      0.0) {
+    return 0;
+  }
+  if (glm::dot(glm::cross(down_b, p - b), outward) * glm::dot(glm::cross(down_b, a - b), outward) <
+      0.0) {
+    return 0;
+  }
+  if (glm::dot(glm::cross(b - a, p - a), outward) * glm::dot(glm::cross(b - a, down_a), outward) <
+      0.0) {
+    return 0;
+  }
+  return before > 0.0 ? 1 : -1;
+}
+
+struct Case {
+  const char* name;
+  Scene (*scene)();
+};
+void PrintTo(const Case& tested, std::ostream* out) { *out << tested.name; }
+
+class Volumes : public ::testing::TestWithParam<Case> {
+ protected:
+  World world_ = make_world(GetParam().scene());
+  Numbers numbers_{42};
+
+  LightPoint random_light(int i) {
+    const Vec3 place = numbers_.in_box(0.9f * world_.bounds.radius());
+    return i % 4 == 3 ? LightPoint(glm::normalize(place), 0.0f) : LightPoint(place, 1.0f);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Meshes, Volumes,
+                         ::testing::Values(Case{"tetrahedron", tetrahedron},
+                                           Case{"open quad", open_quad},
+                                           Case{"three on an edge", fan_of_three},
+                                           Case{"mirrored", mirrored_twins},
+                                           Case{"doubled quad", doubled_quad}, Case{"soup", soup},
+                                           Case{"room", furnished_room}),
+                         [](const ::testing::TestParamInfo<Case>& tested) {
+                           std::string name = tested.param.name;
+                           std::replace(name.begin(), name.end(), ' ', '_');
+                           return name;
+                         });
+
+TEST_P(Volumes, CountTheTrianglesBetweenAnyPointAndTheLight) {
+  const EdgeList list(world_);
+  int shadowed = 0;
+  for (int i = 0; i < 100; ++i) {
+    const LightPoint light = random_light(i);
+    const Vec3 eye = numbers_.in_box(world_.bounds.radius());
+    const ShadowVolumes volumes = list.volumes(light, eye, VolumeCount::kPlain);
+    ASSERT_EQ(volumes.eye_count, blockers(world_, light, dvec3(eye)));
+    for (int k = 0; k < 20; ++k) {
+      const dvec3 point(numbers_.in_box(world_.bounds.radius()));
+      int count = volumes.eye_count;
+      for (const VolumeEdge& edge : volumes.edges) {
+        count += quad_crossing(list, edge, light, dvec3(eye), point);
+      }
+      // Through a triangle itself, from its lit side into its shadow or back.
+      for (std::uint32_t t = 0; t < world_.size(); ++t) {
+        const dvec3 a(world_.positions[world_.triangles[t].x]);
+        const double w = light.w;
+        const bool lit_front = glm::dot(dvec3(world_.area_vector(t)), dvec3(light) - w * a) > 0.0;
+        count += (lit_front ? 1 : -1) * crossing(world_, t, dvec3(eye), point);
+      }
+      ASSERT_EQ(count, blockers(world_, light, point)) << "light " << i << " point " << k;
+      shadowed += count > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(shadowed, 20);
+}
+
+TEST_P(Volumes, HalvedAndInsideWallsStillTellLightFromShadowWhereverOneSees) {
+  const std::vector<Vec4> all_walls = find_walls(world_);
+  int lit = 0, shadowed = 0;
+  for (int i = 0; i < 200; ++i) {
+    const LightPoint light = random_light(i);
+    const Vec3 eye = numbers_.in_box(0.9f * world_.bounds.radius());
+    std::vector<Vec4> walls;
+    for (const Vec4& wall : all_walls) {
+      const std::array<Vec4, 1> one = {wall};
+      if (is_inside(one, light) && is_inside(one, Vec4(eye, 1.0f))) walls.push_back(wall);
+    }
+    const EdgeList list(world_, walls);
+    const ShadowVolumes volumes = list.volumes(light, eye);
+    for (int k = 0; k < 20; ++k) {
+      // Up to a little before what is seen that way, if anything is.
+      dvec3 point = dvec3(eye) + 4.0 * dvec3(numbers_.in_box(world_.bounds.radius()));
+      const bool sees_nothing = [&] {
+        double nearest = 2.0;
+        for (std::uint32_t t = 0; t < world_.size(); ++t) {
+          if (crossing(world_, t, dvec3(eye), point) == 0) continue;
+          const dvec3 a(world_.positions[world_.triangles[t].x]), n(world_.area_vector(t));
+          nearest =
+              std::min(nearest, glm::dot(n, a - dvec3(eye)) / glm::dot(n, point - dvec3(eye)));
+        }
+        if (nearest <= 1.0) point = glm::mix(dvec3(eye), point, 0.999999 * nearest);
+        return nearest > 1.0;
+      }();
+      if (sees_nothing) continue;
+      int count = volumes.eye_count;
+      for (const VolumeEdge& edge : volumes.edges) {
+        count += quad_crossing(list, edge, light, dvec3(eye), point);
+      }
+      const bool is_lit = count == 0 && !volumes.dark;
+      ASSERT_EQ(is_lit, blockers(world_, light, point) == 0) << "light " << i << " point " << k;
+      (is_lit ? lit : shadowed) += 1;
+    }
+  }
+  EXPECT_GT(lit, 20);
+  EXPECT_GT(shadowed, 20);
+}
+
+TEST(EdgeList, ExtrudesAClosedMeshAlongItsSilhouetteOnce) {
+  const World world = make_world(tetrahedron());
+  const EdgeList list(world);
+  EXPECT_EQ(list.edges(), 6u);
+  const Vec3 eye(5.0f, 6.0f, 7.0f);
+  // From straight below one triangle is seen, from the corner's octant three.
+  EXPECT_THAT(list.volumes({0.2f, 0.2f, -9.0f, 1.0f}, eye).edges, SizeIs(3));
+  EXPECT_THAT(list.volumes({-9.0f, -9.0f, -9.0f, 1.0f}, eye).edges, SizeIs(3));
+  EXPECT_THAT(list.volumes({-9.0f, -9.0f, 0.1f, 1.0f}, eye).edges, SizeIs(4));
+  // All four planes face the light inside: it extrudes nothing, and whoever is outside sees none.
+  const ShadowVolumes inside = list.volumes({0.2f, 0.2f, 0.2f, 1.0f}, eye);
+  EXPECT_THAT(inside.edges, SizeIs(0));
+  EXPECT_TRUE(inside.dark);
+}
+
+TEST(EdgeList, ExtrudesTheRimOfAnOpenQuadAlone) {
+  const World world = make_world(open_quad());
+  const EdgeList list(world);
+  EXPECT_EQ(list.edges(), 5u);
+  const LightPoint light(0.1f, 2.0f, 0.2f, 1.0f);
+  EXPECT_THAT(list.volumes(light, {0, 1, 0}).edges, SizeIs(4));
+  EXPECT_EQ(list.volumes(light, {0, 1, 0}).eye_count, 0);
+  EXPECT_EQ(list.volumes(light, {0, -1, 0}).eye_count, 1);
+  // On both its sides alike.
+  EXPECT_EQ(list.volumes({0.1f, -2.0f, 0.2f, 1.0f}, {0, 1, 0}).eye_count, 1);
+}
+
+TEST(EdgeList, ExtrudesAnEdgeOfThreeAsOftenAsTheyDoNotCancel) {
+  const World world = make_world(fan_of_three());
+  const EdgeList list(world);
+  EXPECT_EQ(list.edges(), 7u);
+  // The shared edge: its three triangles lie on one side of it, as seen from afar at +x, but for
+  // the first, which hides behind it.
+  const auto times = [&](const LightPoint& light) {
+    int n = 0;
+    for (const VolumeEdge& edge : list.volumes(light, {9, 9, 9}).edges) {
+      const Vec3 a = list.vertices()[edge.from], b = list.vertices()[edge.to];
+      n += std::abs(a.z) == 1.0f && std::abs(b.z) == 1.0f ? 1 : 0;
+    }
+    return n;
+  };
+  EXPECT_EQ(times({0.0f, 9.0f, 0.1f, 1.0f}), 1);  // two to one side, one to the other
+  EXPECT_EQ(times({9.0f, 0.1f, 0.0f, 1.0f}), 1);
+}
+
+TEST(EdgeList, WeldsInstancesAndTheirMirrorImages) {
+  const World world = make_world(mirrored_twins());
+  const EdgeList list(world);
+  EXPECT_THAT(list.vertices(), SizeIs(5));  // three of eight are common
+  EXPECT_EQ(list.edges(), 9u);
+  EXPECT_THAT(list.casters(), SizeIs(8));
+}
+
+TEST(EdgeList, LeavesOutWhatIsBehindEverything) {
+  const World world = make_world(furnished_room());
+  const std::vector<Vec4> walls = find_walls(world);
+  EXPECT_THAT(walls, SizeIs(6));
+  EXPECT_TRUE(is_inside(walls, {0, 0, 0, 1}));
+  EXPECT_FALSE(is_inside(walls, {0, 4, 0, 1}));
+  EXPECT_FALSE(is_inside(walls, {0, 1, 0, 0}));  // daylight does not get in
+  const EdgeList list(world, walls);
+  EXPECT_THAT(list.casters(), SizeIs(10));
+  // The box stands open on the floor; its silhouette is still drawn once, from straight above as
+  // well: four edges of its lid.
+  EXPECT_THAT(list.volumes({0.1f, 2.9f, 0.2f, 1.0f}, {2, 2, 2}).edges, SizeIs(4));
+}
+
+TEST(EdgeList, NoticesAnEyeInThePlaneOfAQuad) {
+  const World world = make_world(open_quad());
+  const EdgeList list(world);
+  const LightPoint light(0.0f, 1.0f, 0.0f, 1.0f);
+  const auto clear = [&](const Vec3& eye) {
+    return is_clear_of(list, list.volumes(light, eye), light, eye, 1e-6f);
+  };
+  EXPECT_FALSE(clear({2.0f, -1.0f, 0.5f}));  // below the edge at x = 1
+  EXPECT_TRUE(clear({2.0f, -1.001f, 0.5f}));
+  EXPECT_TRUE(clear({2.0f, -1.0f, 5.0f}));  // beside it
+}
+
+}  // namespace
+}  // namespace lantern
