@@ -45,6 +45,7 @@ ConvergenceRun in_time(const Arguments& arguments, const std::string& method, do
   constexpr std::size_t kPathsOfPass = 32;
   run.options.passes = 0;
   run.options.seconds = seconds;
+  if (run.options.method == Method::kPath) run.options.samples = kPathSamplesInTime;
   run.options.lights.paths = kPathsOfPass;
   run.options.lights.pool = arguments.pool;
   return run;

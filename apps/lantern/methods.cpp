@@ -17,7 +17,7 @@ struct NamedMethod {
 };
 constexpr NamedMethod kMethods[] = {
     {"instant-radiosity", Method::kInstantRadiosity},
-    {"path", std::nullopt},
+    {"path", Method::kPath},
     {"radiosity-matrix", std::nullopt},
     {"radiosity-hemicube", std::nullopt},
     {"radiosity-progressive", std::nullopt},
@@ -40,6 +40,7 @@ const std::vector<SpecialOption>& special_options() {
       {"--compensate", {Method::kInstantRadiosity}},
       {"--lights-from", {Method::kInstantRadiosity}},
       {"--single-rays", {Method::kInstantRadiosity}},
+      {"--variance", {Method::kPath}},
   };
   return options;
 }

@@ -11,6 +11,10 @@
 
 namespace lantern::app {
 
+/// Samples of a pass by path tracing where passes fill a given time: few enough to keep to it,
+/// enough to be well spread.
+inline constexpr int kPathSamplesInTime = 16;
+
 /// What --method takes, also what is not in this version.
 std::vector<std::string> method_names();
 

@@ -40,6 +40,7 @@ struct Arguments {
   std::string depth = "half";
   std::string lights_from;
   bool single_rays = false;
+  std::string variance;
   bool json = false;
 };
 
@@ -84,11 +85,23 @@ void add_instant_radiosity(const Arguments& arguments, RenderOptions& options) {
   options.shadow_rays = arguments.single_rays ? ShadowRays::kSingle : ShadowRays::kPackets;
 }
 
+void add_path(const Arguments& arguments, RenderOptions& options) {
+  const bool in_time = options.seconds.has_value();
+  if (options.passes == 0 && !in_time) options.passes = 1;
+  constexpr int kUsualSamples = 64;
+  if (options.samples == 0) options.samples = in_time ? kPathSamplesInTime : kUsualSamples;
+  options.path.seed = arguments.lights.seed;
+  options.path.variance = !arguments.variance.empty();
+}
+
 RenderOptions render_options(const Arguments& arguments) {
   RenderOptions options = common_options(arguments);
   switch (options.method) {
     case Method::kInstantRadiosity:
       add_instant_radiosity(arguments, options);
+      break;
+    case Method::kPath:
+      add_path(arguments, options);
       break;
   }
   return options;
@@ -131,6 +144,8 @@ Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
     case Method::kInstantRadiosity:
       add_instant_radiosity(arguments, options, statistics, metadata);
       break;
+    case Method::kPath:
+      break;
   }
   return metadata;
 }
@@ -144,6 +159,7 @@ void print_json(const Rendered& rendered, double seconds_load, double seconds_to
                               {"camera_rays", s.rays.camera_rays},
                               {"shadow_rays", s.rays.shadow_rays},
                               {"compensation_rays", s.rays.compensation_rays},
+                              {"bounce_rays", s.rays.bounce_rays},
                               {"seconds_load", seconds_load},
                               {"seconds_prepare", s.seconds_prepare},
                               {"seconds_lights", s.seconds_lights},
@@ -152,6 +168,20 @@ void print_json(const Rendered& rendered, double seconds_load, double seconds_to
                               {"peak_bytes", peak_bytes()},
                               {"warnings", rendered.warnings}};
   fmt::print("{}\n", out.dump());
+}
+
+/// Variances are small numbers of many magnitudes.
+void require_variance_format(const Arguments& arguments) {
+  require_image_format(arguments.variance);
+  if (extension(arguments.variance) == ".png") {
+    throw UsageError(
+        fmt::format("--variance: '{}' should be .exr, .hdr or .pfm; PNG has too few "
+                    "steps for variances",
+                    arguments.variance));
+  }
+  if (arguments.variance == arguments.out) {
+    throw UsageError("--variance and --output name the same file");
+  }
 }
 
 void run(const CLI::App& command, Arguments& arguments) {
@@ -167,6 +197,10 @@ void run(const CLI::App& command, Arguments& arguments) {
   require_other_file(arguments.out, arguments.scene.path);
   require_other_file(arguments.out, arguments.lights_from);
   require_writable(arguments.out);
+  if (!arguments.variance.empty()) {
+    require_variance_format(arguments);
+    require_writable(arguments.variance);
+  }
   ThreadScope threads(arguments.scene.threads);
   threads.run([&] {
     const StopFlag& stop = stop_on_interrupt();
@@ -195,6 +229,11 @@ void run(const CLI::App& command, Arguments& arguments) {
     write_with.metadata = metadata_of(arguments, options, rendered.statistics);
     finish_in_peace();
     write_image(arguments.out, rendered.image, write_with);
+    if (rendered.variance) {
+      write_with.exr_depth = ExrDepth::kFloat;  // half has no numbers below 6e-8
+      write_with.metadata["quantity"] = "variance of each pixel's mean";
+      write_image(arguments.variance, *rendered.variance, write_with);
+    }
     if (arguments.json) print_json(rendered, seconds_load, seconds_since(start));
   });
 }
@@ -237,6 +276,8 @@ void add_render(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--lights-from", a.lights_from, "Lights of a JSON file instead of a walk");
   command->add_flag("--single-rays", a.single_rays, "Shadow rays one by one, for checks");
+  command->add_option("--variance", a.variance,
+                      "OUT.exr, OUT.hdr or OUT.pfm: the variance of each pixel's mean (path)");
   command->add_flag("--json", a.json, "Statistics as one JSON object on standard output");
   command->callback([command, arguments] { run(*command, *arguments); });
 }

@@ -178,6 +178,33 @@ TEST_F(CommandTest, RenderTellsStatisticsAsJson) {
   EXPECT_GT(json["peak_bytes"], 1 << 20);
 }
 
+TEST_F(CommandTest, TracesPathsAndWritesTheirVariance) {
+  const std::vector<std::string> arguments = {"render",     own("cornell_box.scene"),
+                                              "-o",         path("a.exr"),
+                                              "--size",     "24x16",
+                                              "--method",   "path",
+                                              "--json",     "--seed",
+                                              "3",          "--samples",
+                                              "4",          "--passes",
+                                              "8",          "--variance",
+                                              path("v.exr")};
+  const Outcome outcome = run(arguments);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["lights"], 0);
+  EXPECT_EQ(json["paths"], 24 * 16 * 4 * 8);
+  EXPECT_EQ(json["passes"], 8);
+  EXPECT_GT(json["shadow_rays"], 0);
+  for (const char* name : {"a.exr", "v.exr"}) {
+    EXPECT_THAT(read_metadata(folder_ / name),
+                IsSupersetOf(Metadata{
+                    {"method", "path"}, {"samples", "4"}, {"passes", "8"}, {"seed", "3"}}));
+    EXPECT_FALSE(is_black(read_image(folder_ / name).at(12, 8))) << name;
+  }
+  EXPECT_TRUE(read_metadata(folder_ / "v.exr").contains("quantity"));
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("a.exr", "v.exr"));
+}
+
 TEST_F(CommandTest, CompareTellsDistancesAsJson) {
   ASSERT_EQ(run(render("a.pfm")).code, 0);
   ASSERT_EQ(run(render("b.pfm", {"--seed", "1"})).code, 0);
@@ -310,7 +337,13 @@ TEST_F(CommandTest, RefusesWrongUsage) {
       {"view", own("furnace.scene")},
       {"compare", path("a.pfm")},
       render("a.png", {"--no-such-option"}),
-      render("a.png", {"--method", "path"}),
+      render("a.png", {"--method", "path"}),  // with --lights
+      {"render", own("furnace.scene"), "-o", path("a.png"), "--method", "path", "--compensate"},
+      {"render", own("furnace.scene"), "-o", path("a.png"), "--method", "path", "--variance",
+       path("v.png")},
+      {"render", own("furnace.scene"), "-o", path("a.exr"), "--method", "path", "--variance",
+       path("a.exr")},
+      render("a.png", {"--variance", path("v.exr")}),
       render("a.png", {"--method", "radiosity-matrix"}),
       render("a.png", {"--method", "guess"}),
       render("a.png", {"--backend", "gl"}),
@@ -415,7 +448,10 @@ TEST_F(CommandTest, KeepsTheOldPictureUntilTheNewOneIsWhole) {
 TEST_F(CommandTest, WritesWhatIsThereWhenInterrupted) {
   // One endless pass, and passes without end.
   const std::vector<std::vector<std::string>> endless = {
-      {"--size", "2048x2048", "--lights", "4000"}, {"--size", "64x64", "--passes", "100000000"}};
+      {"--size", "2048x2048", "--lights", "4000"},
+      {"--size", "64x64", "--passes", "100000000"},
+      {"--size", "1024x1024", "--samples", "10000", "--method", "path"},
+      {"--size", "64x64", "--passes", "100000000", "--method", "path"}};
   for (const int signal : {SIGINT, SIGTERM}) {
     for (const auto& options : endless) {
       std::vector<std::string> arguments = {"render", own("cornell_box.scene"), "-o",

@@ -4,6 +4,7 @@
 #include "lantern/core/error.h"
 #include "lantern/pipeline/render_instant_radiosity.h"
 #include "lantern/pipeline/render_job.h"
+#include "lantern/pipeline/render_path.h"
 #include "lantern/trace/embree.h"
 
 #include <cassert>
@@ -35,6 +36,8 @@ Rendered render(const Scene& scene, const RenderOptions& options, const StopFlag
   switch (options.method) {
     case Method::kInstantRadiosity:
       return render_instant_radiosity(job);
+    case Method::kPath:
+      return render_path(job);
   }
   assert(false);
   return {};

@@ -22,6 +22,7 @@ namespace lantern {
 
 enum class Method {
   kInstantRadiosity,  // [Keller 1997]
+  kPath,              // [Kajiya 1986]
 };
 
 /// How lights are made (instant radiosity).
@@ -32,6 +33,12 @@ struct LightOptions {
   std::optional<float> reflectivity;  // none: the scene's mean
   bool jitter = false;
   PointSet points;
+};
+
+/// How paths are traced (path).
+struct PathTracing {
+  std::uint64_t seed = 0;
+  bool variance = false;  // the picture of the variance as well
 };
 
 struct RenderOptions {
@@ -49,12 +56,15 @@ struct RenderOptions {
   float bound = 0.0f;
   bool compensate = false;
   ShadowRays shadow_rays = ShadowRays::kPackets;
+
+  PathTracing path;
 };
 
 struct RayCounts {
   std::uint64_t camera_rays = 0;
   std::uint64_t shadow_rays = 0;
   std::uint64_t compensation_rays = 0;
+  std::uint64_t bounce_rays = 0;
 };
 
 /// What a method does not have is zero.
@@ -71,6 +81,7 @@ struct RenderStatistics {
 
 struct Rendered {
   Image image;
+  std::optional<Image> variance;  // of each pixel and channel of `image`, where it was asked for
   RenderStatistics statistics;
   std::vector<std::string> warnings;
 };
