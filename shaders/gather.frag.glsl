@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// The irradiance that each element receives from a cluster of shooting elements, which lie in one
+// plane: near it the sum of the elements' own form factors, farther away that of a disc. What the
+// hemicube on the cluster sees decides whether anything is between. [Coombe, Harris & Lastra 2004]
+#include "shaders/form_factor.glsl"
+#include "shaders/hemicube.glsl"
+
+uniform sampler2D points;   // of the elements, several layers of rows
+uniform sampler2D normals;  // w: exposed area
+uniform sampler2D corners;  // three layers of rows
+uniform sampler2D unshot;   // radiosity; w: exposed share of the element
+uniform usampler2D items;
+uniform sampler2D planes;     // of the world's triangles
+uniform sampler2D triangles;  // their corners, three layers of rows
+uniform int layers;  // of `points`
+uniform int layer;   // the one to use
+
+uniform vec3 origin;  // of the hemicube
+uniform mat3 to_local;
+uniform float tolerance;  // the part of its way beyond an occluder's plane that settles a shadow
+uniform float hair;       // what counts as on a plane, in metres
+
+uniform int first;  // the cluster's elements
+uniform int count;
+uniform vec3 centre;
+uniform float area;
+uniform vec3 radiosity;     // mean over the cluster
+uniform float near_square;  // of the distance below which elements are summed
+
+layout(location = 0) out vec4 irradiance;
+
+ivec2 texel_of(int i, ivec2 size) { return ivec2(i % size.x, i / size.x); }
+
+/// Whether the segment from the origin goes through the triangle, whose plane it crosses.
+bool is_met(int triangle, vec3 way) {
+  ivec2 size = textureSize(planes, 0);
+  ivec2 there = texel_of(triangle, size);
+  vec3 a = texelFetch(triangles, there, 0).xyz - origin;
+  vec3 b = texelFetch(triangles, there + ivec2(0, size.y), 0).xyz - origin;
+  vec3 c = texelFetch(triangles, there + ivec2(0, 2 * size.y), 0).xyz - origin;
+  vec3 sides = vec3(dot(way, cross(a, b)), dot(way, cross(b, c)), dot(way, cross(c, a)));
+  return all(greaterThanEqual(sides, vec3(0.0))) || all(lessThanEqual(sides, vec3(0.0)));
+}
+
+/// What the hemicube sees along a local direction: the number of a triangle, or -1.
+int seen(vec3 local) {
+  ivec2 pixel = hemicube_pixel(local, textureSize(items, 0).x);
+  return int(texelFetch(items, pixel, 0).x & 0x7fffffffu) - 1;
+}
+
+/// Whether the plane of the triangle stands between the origin and the point: by how much it does is
+/// exact for each element, so that nothing shadows itself, however flat the angle.
+bool is_between(int triangle, vec3 point, vec3 way, bool settled_by_plane) {
+  vec4 plane = texelFetch(planes, texel_of(triangle, textureSize(planes, 0)), 0);
+  float height = dot(plane.xyz, origin) + plane.w;
+  float beyond = -sign(height) * (dot(plane.xyz, point) + plane.w);
+  if (beyond <= hair) return false;
+  // At an edge the pixel may see the next surface, whose plane cuts off a little of this one.
+  if (settled_by_plane && beyond > tolerance * (beyond + abs(height))) return true;
+  return is_met(triangle, way);
+}
+
+bool is_lit(vec3 point, vec3 way, vec3 local) {
+  int here = seen(local);
+  if (here >= 0 && is_between(here, point, way, true)) return false;
+  // Where an edge passes through the pixel what stands between may fill only a part of it.
+  vec3 a = abs(local);
+  float most = max(a.x, max(a.y, a.z));
+  vec3 d = local / most;
+  float half_pixel = 1.0 / float(textureSize(items, 0).x);
+  for (int k = 0; k < 4; ++k) {
+    float u = (k & 1) == 0 ? -half_pixel : half_pixel;
+    float v = (k & 2) == 0 ? -half_pixel : half_pixel;
+    vec3 tap = d + (a.z == most ? vec3(u, v, 0.0) : a.x == most ? vec3(0.0, u, v) : vec3(u, 0.0, v));
+    int there = seen(vec3(tap.xy, max(tap.z, 0.0)));
+    if (there >= 0 && there != here && is_between(there, point, way, false)) return false;
+  }
+  return true;
+}
+
+vec3 point_of(ivec2 texel, int its_layer) {
+  return texelFetch(points, texel + ivec2(0, its_layer * textureSize(normals, 0).y), 0).xyz;
+}
+
+bool sees(vec3 point) {
+  vec3 way = point - origin;
+  vec3 local = to_local * way;
+  return local.z > hair && is_lit(point, way, local);
+}
+
+/// From the elements of the cluster one by one. Of one that is partly covered (w below 1) the corners
+/// say little: a disc at one of its open points stands for it.
+vec3 from_elements(vec3 point, vec3 normal, int its_layer) {
+  ivec2 size = textureSize(normals, 0);
+  vec3 sum = vec3(0.0);
+  for (int i = first; i < first + count; ++i) {
+    ivec2 there = texel_of(i, size);
+    vec4 leaving = texelFetch(unshot, there, 0);
+    float factor;
+    if (leaving.w < 1.0) {
+      vec4 source = texelFetch(normals, there, 0);
+      factor = point_to_disc(point_of(there, its_layer) - point, normal, source.xyz, source.w);
+    } else {
+      vec3 a = texelFetch(corners, there, 0).xyz - point;
+      vec3 b = texelFetch(corners, there + ivec2(0, size.y), 0).xyz - point;
+      vec3 c = texelFetch(corners, there + ivec2(0, 2 * size.y), 0).xyz - point;
+      factor = point_to_triangle(a, b, c, normal);
+    }
+    sum += leaving.xyz * factor;
+  }
+  return sum;
+}
+
+void main() {
+  ivec2 here = ivec2(gl_FragCoord.xy);
+  irradiance = vec4(0.0);
+  vec4 normal = texelFetch(normals, here, 0);
+  if (normal.w == 0.0) return;
+  vec3 point = point_of(here, layer);
+  vec3 to_centre = centre - point;
+  if (dot(to_centre, to_centre) >= near_square) {
+    vec3 source_normal = vec3(to_local[0].z, to_local[1].z, to_local[2].z);
+    float factor = point_to_disc(to_centre, normal.xyz, source_normal, area);
+    if (factor > 0.0 && sees(point)) irradiance = vec4(radiosity * factor, 0.0);
+    return;
+  }
+  // Nearby a form factor changes over the receiving element: a few of its points, well apart.
+  const int kNearPoints = 4;
+  vec3 sum = vec3(0.0);
+  for (int k = 0; k < kNearPoints; ++k) {
+    int its_layer = (layer + k * (layers / kNearPoints)) % layers;
+    point = point_of(here, its_layer);
+    if (sees(point)) sum += from_elements(point, normal.xyz, its_layer);
+  }
+  irradiance = vec4(sum / float(kNearPoints), 0.0);
+}
