@@ -19,8 +19,8 @@ constexpr NamedMethod kMethods[] = {
     {"instant-radiosity", Method::kInstantRadiosity},
     {"path", Method::kPath},
     {"radiosity-matrix", std::nullopt},
-    {"radiosity-hemicube", std::nullopt},
-    {"radiosity-progressive", std::nullopt},
+    {"radiosity-hemicube", Method::kRadiosityHemicube},
+    {"radiosity-progressive", Method::kRadiosityProgressive},
     {"radiosity-gpu", std::nullopt},
 };
 
@@ -41,6 +41,11 @@ const std::vector<SpecialOption>& special_options() {
       {"--lights-from", {Method::kInstantRadiosity}},
       {"--single-rays", {Method::kInstantRadiosity}},
       {"--variance", {Method::kPath}},
+      {"--patches", {Method::kRadiosityHemicube, Method::kRadiosityProgressive}},
+      {"--patch-size", {Method::kRadiosityHemicube, Method::kRadiosityProgressive}},
+      {"--hemicube", {Method::kRadiosityHemicube, Method::kRadiosityProgressive}},
+      {"--cutoff", {Method::kRadiosityProgressive}},
+      {"--no-ambient", {Method::kRadiosityProgressive}},
   };
   return options;
 }

@@ -41,6 +41,8 @@ struct Arguments {
   std::string lights_from;
   bool single_rays = false;
   std::string variance;
+  RadiosityOptions radiosity;
+  bool no_ambient = false;
   bool json = false;
 };
 
@@ -94,6 +96,23 @@ void add_path(const Arguments& arguments, RenderOptions& options) {
   options.path.variance = !arguments.variance.empty();
 }
 
+void add_radiosity(const Arguments& arguments, RenderOptions& options) {
+  // A solution is one pass; its samples smooth the edges.
+  constexpr int kUsualSamples = 16;
+  if (options.passes > 1) {
+    throw UsageError(fmt::format("--passes means nothing to --method {}", arguments.method));
+  }
+  if (arguments.radiosity.hemicube.resolution % Hemicube::kResolutionStep != 0) {
+    throw UsageError(
+        fmt::format("--hemicube takes a multiple of {}", int{Hemicube::kResolutionStep}));
+  }
+  options.passes = 1;
+  if (options.samples == 0) options.samples = kUsualSamples;
+  options.radiosity = arguments.radiosity;
+  options.radiosity.hemicube.seed = arguments.lights.seed;
+  options.radiosity.ambient = !arguments.no_ambient;
+}
+
 RenderOptions render_options(const Arguments& arguments) {
   RenderOptions options = common_options(arguments);
   switch (options.method) {
@@ -102,6 +121,10 @@ RenderOptions render_options(const Arguments& arguments) {
       break;
     case Method::kPath:
       add_path(arguments, options);
+      break;
+    case Method::kRadiosityHemicube:
+    case Method::kRadiosityProgressive:
+      add_radiosity(arguments, options);
       break;
   }
   return options;
@@ -117,6 +140,19 @@ void add_instant_radiosity(const Arguments& arguments, const RenderOptions& opti
                    {"sampler", arguments.lights.sampler},
                    {"jitter", arguments.lights.jitter ? "yes" : "no"}});
   if (!arguments.lights_from.empty()) metadata["lights-from"] = arguments.lights_from;
+}
+
+void add_radiosity(const RenderOptions& options, const RenderStatistics& statistics,
+                   Metadata& metadata) {
+  const RadiosityOptions& radiosity = options.radiosity;
+  metadata.insert({{"patches", std::to_string(statistics.radiosity.patches)},
+                   {"hemicube", std::to_string(radiosity.hemicube.resolution)}});
+  if (options.method == Method::kRadiosityProgressive) {
+    metadata.insert({{"cutoff", fmt::format("{}", radiosity.cutoff)},
+                     {"shots", std::to_string(statistics.radiosity.shots)},
+                     {"unshot", fmt::format("{:.3g}", statistics.radiosity.unshot_share)},
+                     {"ambient", radiosity.ambient ? "yes" : "no"}});
+  }
 }
 
 Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
@@ -146,27 +182,48 @@ Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
       break;
     case Method::kPath:
       break;
+    case Method::kRadiosityHemicube:
+    case Method::kRadiosityProgressive:
+      add_radiosity(options, statistics, metadata);
+      break;
   }
   return metadata;
 }
 
-void print_json(const Rendered& rendered, double seconds_load, double seconds_total) {
+nlohmann::json radiosity_json(Method method, const RadiosityStatistics& s) {
+  nlohmann::json out = {
+      {"patches", s.patches}, {"elements", s.elements}, {"hemicubes", s.hemicubes}};
+  if (method == Method::kRadiosityProgressive) {
+    out["shots"] = s.shots;
+    out["unshot_share"] = s.unshot_share;
+    out["conservation_error"] = s.conservation_error;
+  } else {
+    out["row_sums"] = {s.row_sums.least, s.row_sums.mean, s.row_sums.most};
+    out["reciprocity_error"] = s.reciprocity_error;
+    out["sweeps"] = s.sweeps;
+  }
+  return out;
+}
+
+void print_json(Method method, const Rendered& rendered, double seconds_load,
+                double seconds_total) {
   const RenderStatistics& s = rendered.statistics;
-  const nlohmann::json out = {{"lights", s.lights},
-                              {"paths", s.paths},
-                              {"passes", s.passes},
-                              {"reflectivity", s.reflectivity},
-                              {"camera_rays", s.rays.camera_rays},
-                              {"shadow_rays", s.rays.shadow_rays},
-                              {"compensation_rays", s.rays.compensation_rays},
-                              {"bounce_rays", s.rays.bounce_rays},
-                              {"seconds_load", seconds_load},
-                              {"seconds_prepare", s.seconds_prepare},
-                              {"seconds_lights", s.seconds_lights},
-                              {"seconds_gather", s.seconds_gather},
-                              {"seconds_total", seconds_total},
-                              {"peak_bytes", peak_bytes()},
-                              {"warnings", rendered.warnings}};
+  nlohmann::json out = {{"lights", s.lights},
+                        {"paths", s.paths},
+                        {"passes", s.passes},
+                        {"reflectivity", s.reflectivity},
+                        {"camera_rays", s.rays.camera_rays},
+                        {"shadow_rays", s.rays.shadow_rays},
+                        {"compensation_rays", s.rays.compensation_rays},
+                        {"bounce_rays", s.rays.bounce_rays},
+                        {"seconds_load", seconds_load},
+                        {"seconds_prepare", s.seconds_prepare},
+                        {"seconds_lights", s.seconds_lights},
+                        {"seconds_gather", s.seconds_gather},
+                        {"seconds_total", seconds_total},
+                        {"peak_bytes", peak_bytes()},
+                        {"warnings", rendered.warnings}};
+  if (s.radiosity.patches > 0) out.update(radiosity_json(method, s.radiosity));
   fmt::print("{}\n", out.dump());
 }
 
@@ -234,7 +291,9 @@ void run(const CLI::App& command, Arguments& arguments) {
       write_with.metadata["quantity"] = "variance of each pixel's mean";
       write_image(arguments.variance, *rendered.variance, write_with);
     }
-    if (arguments.json) print_json(rendered, seconds_load, seconds_since(start));
+    if (arguments.json) {
+      print_json(options.method, rendered, seconds_load, seconds_since(start));
+    }
   });
 }
 
@@ -278,6 +337,24 @@ void add_render(CLI::App& app) {
   command->add_flag("--single-rays", a.single_rays, "Shadow rays one by one, for checks");
   command->add_option("--variance", a.variance,
                       "OUT.exr, OUT.hdr or OUT.pfm: the variance of each pixel's mean (path)");
+  CLI::Option* count =
+      command->add_option("--patches", a.radiosity.patches.count, "Patches at most (radiosity)")
+          ->check(CLI::Range(1, 16'000'000))
+          ->capture_default_str();
+  command->add_option("--patch-size", a.radiosity.patches.size, "Their longest edge in metres")
+      ->check(finite(1e-9, 1e9))
+      ->excludes(count);
+  command
+      ->add_option("--hemicube", a.radiosity.hemicube.resolution,
+                   "Pixels along a hemicube's edge, a multiple of 8")
+      ->check(CLI::Range(Hemicube::kResolutionStep, 4096))
+      ->capture_default_str();
+  command
+      ->add_option("--cutoff", a.radiosity.cutoff,
+                   "Stop shooting when this share of the flux is left")
+      ->check(finite(0.0, 1.0))
+      ->capture_default_str();
+  command->add_flag("--no-ambient", a.no_ambient, "Leave out what is not shot yet");
   command->add_flag("--json", a.json, "Statistics as one JSON object on standard output");
   command->callback([command, arguments] { run(*command, *arguments); });
 }

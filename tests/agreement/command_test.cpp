@@ -102,6 +102,16 @@ class CommandTest : public testing::Test {
     return arguments;
   }
 
+  /// The furnace to a.pfm by a radiosity method.
+  std::vector<std::string> radiosity(const std::string& method,
+                                     std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments = {
+        "render",   own("furnace.scene"), "-o", path("a.pfm"), "--size", "24x16",
+        "--method", "radiosity-" + method};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   static std::string own(const std::string& name) {
     return (fs::path(LANTERN_SOURCE_DIR) / "scenes" / name).string();
@@ -203,6 +213,49 @@ TEST_F(CommandTest, TracesPathsAndWritesTheirVariance) {
   }
   EXPECT_TRUE(read_metadata(folder_ / "v.exr").contains("quantity"));
   EXPECT_THAT(files(), testing::UnorderedElementsAre("a.exr", "v.exr"));
+}
+
+TEST_F(CommandTest, RadiosityTellsStatisticsAsJson) {
+  for (const std::string method : {"hemicube", "progressive"}) {
+    const Outcome outcome =
+        run(radiosity(method, {"--json", "--patches", "100", "--hemicube", "32"}));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto json = nlohmann::json::parse(outcome.out);
+    EXPECT_GT(json["patches"], 10);
+    EXPECT_LE(json["patches"], 100);
+    EXPECT_GE(json["elements"], json["patches"]);
+    EXPECT_GE(json["hemicubes"], json["patches"]);
+    if (method == "hemicube") {
+      EXPECT_NEAR(json["row_sums"][1], 1.0, 1e-6);
+      EXPECT_LT(json["reciprocity_error"], 1.0);
+      EXPECT_GT(json["sweeps"], 1);
+    } else {
+      EXPECT_GT(json["shots"], 10);
+      EXPECT_LE(json["unshot_share"], 1e-3);
+      EXPECT_LT(json["conservation_error"], 1e-6);
+    }
+    const Image image = read_image(folder_ / "a.pfm");
+    double mean = 0.0;
+    for (const Rgb& pixel : image.pixels) {
+      mean += static_cast<double>(pixel.g) / static_cast<double>(image.pixels.size());
+    }
+    EXPECT_NEAR(mean, 2.0, 0.02) << method;  // every pixel is 2, but for the grain of few patches
+  }
+}
+
+TEST_F(CommandTest, RadiosityRefusesAMatrixLargerThanMemory) {
+  expect_failure(run(radiosity("hemicube", {"--patches", "1000000"})), 1, "GB");
+}
+
+TEST_F(CommandTest, ProgressiveRadiosityKeepsToItsTime) {
+  const Outcome outcome =
+      run({"render", own("cornell_box.scene"), "-o", path("a.exr"), "--time", "1", "--size",
+           "64x64", "--json", "--method", "radiosity-progressive", "--cutoff", "0"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_LT(outcome.seconds, 1.0 + kPatience);
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_GT(json["shots"], 0);
+  EXPECT_LT(json["unshot_share"], 1.0);
 }
 
 TEST_F(CommandTest, CompareTellsDistancesAsJson) {
@@ -360,6 +413,15 @@ TEST_F(CommandTest, RefusesWrongUsage) {
       render("a.png", {"--fov", "180"}),
       render("a.png", {"--emitter", "lamp"}),
       render("a.png", {"--time", "-1"}),
+      render("a.png", {"--patches", "100"}),
+      render("a.png", {"--method", "radiosity-progressive"}),  // --lights
+      radiosity("hemicube", {"--cutoff", "0.1"}),
+      radiosity("hemicube", {"--passes", "2"}),
+      radiosity("progressive", {"--patches", "0"}),
+      radiosity("progressive", {"--patch-size", "0"}),
+      radiosity("progressive", {"--patch-size", "1", "--patches", "10"}),
+      radiosity("progressive", {"--hemicube", "12"}),
+      radiosity("progressive", {"--cutoff", "2"}),
       render("a.png", {"--threads", "-2"}),
   };
   for (const auto& arguments : wrong) {

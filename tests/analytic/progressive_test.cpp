@@ -3,7 +3,9 @@
 
 #include "lantern/core/hash.h"
 #include "lantern/core/parallel.h"
+#include "lantern/radiosity/hemicube_matrix.h"
 #include "lantern/radiosity/hemicube_rows.h"
+#include "lantern/radiosity/solve.h"
 
 #include "tests/analytic/rooms.h"
 
@@ -35,8 +37,8 @@ struct Patched {
     return {stage.world, *stage.tracer, patches, options};
   }
   ProgressiveRadiosity progressive(const ProgressiveOptions& options = {},
-                                   std::span<const glm::dvec3> direct = {}) const {
-    return {stage.world, *stage.tracer, patches, options, direct};
+                                   std::span<const glm::dvec3> external = {}) const {
+    return {stage.world, *stage.tracer, patches, options, external};
   }
 };
 
@@ -191,6 +193,58 @@ TEST(HemicubeRows, StandWhereTheirElementIsNotCovered) {
     EXPECT_NEAR(row_sum(row), 1.0, 1e-12);
     EXPECT_GE(row.elements.size(), 10u);
   }
+}
+
+// --- the matrix
+// ------------------------------------------------------------------------------------
+
+/// Gathered by the matrix that hemicubes find.
+std::vector<glm::dvec3> gathered(const Patched& room, const FormFactors& factors) {
+  const StopFlag never{false};
+  const std::vector<glm::dvec3> none(room.patches.elements(), glm::dvec3(0.0));
+  return solve_by_gauss_seidel(room.patches, factors, none, {}, never).irradiance;
+}
+
+FormFactors matrix_by_hemicubes(const Patched& room, int resolution) {
+  const StopFlag never{false};
+  return hemicube_form_factors(room.stage.world, *room.stage.tracer, room.patches,
+                               {.resolution = resolution}, never);
+}
+
+TEST(HemicubeMatrix, FurnaceIsEmissionOverOneLessReflectance) {
+  for (const float reflectance : {0.0f, 0.5f, 0.9f}) {
+    constexpr float kEmission = 2.0f;
+    const Patched room(test::box_room({2.0f, 1.5f, 2.5f}, reflectance, kEmission), 200);
+    const FormFactors factors = matrix_by_hemicubes(room, 32);
+    const RowSums sums = row_sums(room.patches, factors);
+    // Rows add up to 1 but for the rounding of their few hundred floats.
+    EXPECT_NEAR(sums.least, 1.0, 1e-6);
+    EXPECT_NEAR(sums.most, 1.0, 1e-6);
+    const double expected =
+        kPi64 * static_cast<double>(kEmission) / (1.0 - static_cast<double>(reflectance));
+    for (const glm::dvec3& irradiance : gathered(room, factors)) {
+      // Then so does every patch, whatever its factors are, as if reflected 1/(1 - a) times.
+      EXPECT_NEAR(irradiance.g, expected, 1e-5 * expected);
+    }
+  }
+}
+
+TEST(HemicubeMatrix, ReciprocityErrorFallsWithTheResolution) {
+  const Patched room(test::box_room(Vec3(1.0f), 0.5f, 1.0f), 300);
+  const double coarse = reciprocity_error(room.patches, matrix_by_hemicubes(room, 16));
+  const double fine = reciprocity_error(room.patches, matrix_by_hemicubes(room, 128));
+  EXPECT_LT(fine, 0.5 * coarse);
+  // What stays are centres in the place of patches, where patches meet at right angles.
+  EXPECT_LT(fine, 0.2);
+  EXPECT_GT(fine, 0.0);
+}
+
+TEST(HemicubeMatrix, StoppedEarlyTheRestIsBlack) {
+  const Patched room(test::box_room(Vec3(1.0f), 0.5f, 1.0f), 300);
+  const StopFlag at_once{true};
+  const FormFactors factors =
+      hemicube_form_factors(room.stage.world, *room.stage.tracer, room.patches, {}, at_once);
+  EXPECT_EQ(row_sums(room.patches, factors).most, 0.0);
 }
 
 // --- shooting

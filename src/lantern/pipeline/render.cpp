@@ -5,6 +5,8 @@
 #include "lantern/pipeline/render_instant_radiosity.h"
 #include "lantern/pipeline/render_job.h"
 #include "lantern/pipeline/render_path.h"
+#include "lantern/pipeline/render_radiosity_hemicube.h"
+#include "lantern/pipeline/render_radiosity_progressive.h"
 #include "lantern/trace/embree.h"
 
 #include <cassert>
@@ -38,6 +40,10 @@ Rendered render(const Scene& scene, const RenderOptions& options, const StopFlag
       return render_instant_radiosity(job);
     case Method::kPath:
       return render_path(job);
+    case Method::kRadiosityHemicube:
+      return render_radiosity_hemicube(job);
+    case Method::kRadiosityProgressive:
+      return render_radiosity_progressive(job);
   }
   assert(false);
   return {};

@@ -9,6 +9,9 @@
 #include "lantern/lights/virtual_lights.h"
 #include "lantern/lights/walk.h"
 #include "lantern/pipeline/camera.h"
+#include "lantern/radiosity/form_factors.h"
+#include "lantern/radiosity/hemicube_rows.h"
+#include "lantern/radiosity/patches.h"
 #include "lantern/scene/scene.h"
 
 #include <cstddef>
@@ -21,8 +24,10 @@
 namespace lantern {
 
 enum class Method {
-  kInstantRadiosity,  // [Keller 1997]
-  kPath,              // [Kajiya 1986]
+  kInstantRadiosity,      // [Keller 1997]
+  kPath,                  // [Kajiya 1986]
+  kRadiosityHemicube,     // [Cohen & Greenberg 1985]
+  kRadiosityProgressive,  // [Cohen et al. 1988]
 };
 
 /// How lights are made (instant radiosity).
@@ -39,6 +44,14 @@ struct LightOptions {
 struct PathTracing {
   std::uint64_t seed = 0;
   bool variance = false;  // the picture of the variance as well
+};
+
+/// How surfaces are cut into patches and light is exchanged between these (radiosity).
+struct RadiosityOptions {
+  PatchOptions patches;
+  HemicubeOptions hemicube;  // hemicube, progressive
+  double cutoff = 1e-3;      // progressive: the share of the flux emitted that may stay unshot
+  bool ambient = true;       // progressive: what is unshot lights all surfaces alike
 };
 
 struct RenderOptions {
@@ -58,6 +71,7 @@ struct RenderOptions {
   ShadowRays shadow_rays = ShadowRays::kPackets;
 
   PathTracing path;
+  RadiosityOptions radiosity;
 };
 
 struct RayCounts {
@@ -68,12 +82,26 @@ struct RayCounts {
 };
 
 /// What a method does not have is zero.
+struct RadiosityStatistics {
+  std::size_t patches = 0;
+  std::size_t elements = 0;  // sides of patches that light can come to
+  std::size_t hemicubes = 0;
+  RowSums row_sums;
+  double reciprocity_error = 0.0;
+  int sweeps = 0;  // of Gauss-Seidel
+  std::size_t shots = 0;
+  double unshot_share = 0.0;        // of the flux emitted
+  double conservation_error = 0.0;  // likewise
+};
+
+/// What a method does not have is zero.
 struct RenderStatistics {
   std::size_t lights = 0;  // of all passes together, like the counts below
   std::size_t paths = 0;
   std::size_t passes = 0;
   float reflectivity = 0.0f;
   RayCounts rays;
+  RadiosityStatistics radiosity;
   double seconds_prepare = 0.0;  // world, tree, emitters
   double seconds_lights = 0.0;
   double seconds_gather = 0.0;

@@ -7,7 +7,9 @@
 #include "lantern/radiosity/occluders.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
+#include <cmath>
 #include <mutex>
 #include <numeric>
 
@@ -193,6 +195,12 @@ FormFactors::FormFactors(const World& world, const Tracer& tracer, const Patches
   }
 }
 
+FormFactors::FormFactors(std::vector<float> values)
+    : size_(static_cast<std::size_t>(std::llround(std::sqrt(static_cast<double>(values.size()))))),
+      values_(std::move(values)) {
+  assert(size_ * size_ == values_.size());
+}
+
 RowSums row_sums(const Patches& patches, const FormFactors& factors) {
   std::vector<double> sums(factors.size(), 0.0);
   parallel_for(factors.size(), kTile, [&](std::size_t i) {
@@ -211,6 +219,35 @@ RowSums row_sums(const Patches& patches, const FormFactors& factors) {
   result.mean = area > 0.0 ? result.mean / area : 0.0;
   result.least = area > 0.0 ? result.least : 0.0;
   return result;
+}
+
+double reciprocity_error(const Patches& patches, const FormFactors& factors) {
+  const std::size_t n = factors.size();
+  const std::size_t blocks = (n + kBlock - 1) / kBlock;
+  struct Sums {
+    double difference = 0.0, whole = 0.0;
+  };
+  std::vector<Sums> sums(blocks);
+  parallel_for(blocks, 1, [&](std::size_t block) {
+    const std::size_t end = std::min((block + 1) * kBlock, n);
+    // Column by column of blocks, so that what is read across rows stays near.
+    for (std::size_t from = 0; from < end; from += kBlock) {
+      for (std::size_t i = block * kBlock; i < end; ++i) {
+        for (std::size_t j = from; j < std::min(from + kBlock, i); ++j) {
+          const double forth = patches.exposed_area(i) * static_cast<double>(factors.row(i)[j]);
+          const double back = patches.exposed_area(j) * static_cast<double>(factors.row(j)[i]);
+          sums[block].difference += std::abs(forth - back);
+          sums[block].whole += 0.5 * (forth + back);
+        }
+      }
+    }
+  });
+  Sums all;
+  for (const Sums& sum : sums) {
+    all.difference += sum.difference;
+    all.whole += sum.whole;
+  }
+  return all.whole > 0.0 ? all.difference / all.whole : 0.0;
 }
 
 }  // namespace lantern

@@ -36,6 +36,9 @@ class FormFactors {
   FormFactors(const World& world, const Tracer& tracer, const Patches& patches,
               const StopFlag& stop, const AssemblyReport& report = {});
 
+  /// Of factors found in another way: a square matrix, row by row.
+  explicit FormFactors(std::vector<float> values);
+
   /// Bytes that the matrix of so many elements takes.
   static std::uint64_t bytes(std::size_t elements) {
     return static_cast<std::uint64_t>(elements) * elements * sizeof(float);
@@ -57,5 +60,8 @@ struct RowSums {
   double least = 0.0, mean = 0.0, most = 0.0;
 };
 RowSums row_sums(const Patches& patches, const FormFactors& factors);
+
+/// Σ |A_i F_ij - A_j F_ji| / Σ A_i F_ij over all pairs: 0 where what i sends j is what j sends i.
+double reciprocity_error(const Patches& patches, const FormFactors& factors);
 
 }  // namespace lantern

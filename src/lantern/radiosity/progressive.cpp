@@ -40,7 +40,7 @@ double FluxBalance::error() const {
 ProgressiveRadiosity::ProgressiveRadiosity(const World& world, const Tracer& tracer,
                                            const Patches& patches,
                                            const ProgressiveOptions& options,
-                                           std::span<const glm::dvec3> direct)
+                                           std::span<const glm::dvec3> external)
     : patches_(patches), options_(options), rows_(world, tracer, patches, options.hemicube) {
   const std::size_t count = patches.elements();
   area_.resize(count);
@@ -53,7 +53,7 @@ ProgressiveRadiosity::ProgressiveRadiosity(const World& world, const Tracer& tra
     area_[e] = patches.exposed_area(e);
     // What is covered reflects nothing, should a ray find it all the same.
     if (area_[e] > 0.0) reflectance_[e] = patches.reflectance[patches.patch[e]];
-    if (!direct.empty()) received_[e] = direct[e] * area_[e];
+    if (!external.empty()) received_[e] = external[e] * area_[e];
     const glm::dvec3 sent = patches.emission[e] * area_[e];
     emitted_ += sent + received_[e];
     unshot_[e] = sent + reflectance_[e] * received_[e];

@@ -16,8 +16,8 @@
 namespace lantern {
 
 struct ProgressiveOptions {
-  HemicubeOptions hemicube = {};
   double cutoff = 1e-3;  // shooting ends when no more than this share of the flux emitted is unshot
+  HemicubeOptions hemicube = {};
 };
 
 /// Flux in W per channel. At any moment all that was emitted is absorbed, escaped or unshot.
@@ -36,7 +36,8 @@ class ProgressiveRadiosity {
   /// As HemicubeRows takes them. `direct` is the irradiance of each element, in W/m², by lights
   /// that are no patches (points, the sun, the sky); empty if there are none.
   ProgressiveRadiosity(const World& world, const Tracer& tracer, const Patches& patches,
-                       const ProgressiveOptions& options, std::span<const glm::dvec3> direct = {});
+                       const ProgressiveOptions& options,
+                       std::span<const glm::dvec3> external = {});
 
   /// The element with the most unshot flux shoots it, from as many points and by as fine hemicubes
   /// as keep every pixel's flux small; if they are very many only a part of it, so that no shot

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#include "lantern/pipeline/radiosity_stage.h"
+
+#include "lantern/core/error.h"
+#include "lantern/core/memory.h"
+#include "lantern/radiosity/display.h"
+#include "lantern/radiosity/external_light.h"
+#include "lantern/radiosity/form_factors.h"
+
+#include <algorithm>
+
+namespace lantern {
+
+RadiosityStage::RadiosityStage(const RenderJob& job)
+    : patches(make_patches(job.scene, job.world, job.tracer, job.options.radiosity.patches)),
+      external(external_irradiance(job.scene, job.world, job.tracer, patches)) {
+  const auto is_lit = [](const glm::dvec3& value) { return value != glm::dvec3(0.0); };
+  require_light(job.scene.sky || !job.scene.lights.empty() ||
+                std::any_of(patches.emission.begin(), patches.emission.end(), is_lit));
+}
+
+void require_matrix_memory(std::size_t elements) {
+  require_memory(FormFactors::bytes(elements),
+                 fmt::format("the matrix between {} patches", elements),
+                 "take fewer or larger patches, or radiosity-progressive");
+}
+
+Image draw(const RenderJob& job, const Patches& patches, std::span<const glm::dvec3> irradiance) {
+  const Display display(job.scene, job.world, patches);
+  const StopFlag never{false};
+  return display.draw(
+      job.camera, irradiance,
+      {.width = job.options.width, .height = job.options.height, .samples = job.options.samples},
+      never);
+}
+
+}  // namespace lantern
