@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/path/light_choice.h"
 
+#include "lantern/core/hash.h"
 #include "lantern/sampling/warp.h"
 #include "lantern/scene/surface.h"
 #include "lantern/scene/texture.h"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace lantern {
@@ -92,84 +94,132 @@ float spot_share(const PunctualLight& light, float cos_axis) {
   return ramp * ramp;
 }
 
-/// The integral of spot_share() over the sphere.
-double spot_solid_angle(const PunctualLight& light) {
-  const double inner = std::cos(static_cast<double>(light.inner_angle));
-  const double outer = std::cos(static_cast<double>(light.outer_angle));
-  return 2.0 * std::numbers::pi * (1.0 - inner + (inner - outer) / 3.0);
-}
+constexpr std::uint32_t kNoLeaf = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
 LightChoice::LightChoice(const Scene& scene, const World& world)
     : scene_(scene), world_(world), scale_(world.coordinate_scale()) {
+  std::vector<LightBound> bounds;
   for (std::uint32_t t = 0; t < world.size(); ++t) {
     const Material& material = scene.materials[index(world.materials[t])];
     if (is_black(material.emission)) continue;
     has_light_ = true;
-    const double to_flux = std::numbers::pi * static_cast<double>(world.area(t));
-    add({Kind::kFront, t}, to_flux * mean_radiance(scene, world, t, true));
-    if (material.double_sided) {
-      add({Kind::kBack, t}, to_flux * mean_radiance(scene, world, t, false));
-    }
+    add_triangle(t, true, bounds);
+    if (material.double_sided) add_triangle(t, false, bounds);
   }
-  const double radius = static_cast<double>(world.bounds.radius());
-  const double disc = std::numbers::pi * radius * radius;
-  for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
-    const PunctualLight& light = scene.lights[i];
-    const double to_flux = light.kind == PunctualKind::kPoint  ? 4.0 * std::numbers::pi
-                           : light.kind == PunctualKind::kSpot ? spot_solid_angle(light)
-                                                               : disc;
-    add({Kind::kPunctual, i}, to_flux * static_cast<double>(mean_component(light.intensity)));
+  for (std::uint32_t i = 0; i < scene.lights.size(); ++i) add_punctual(i, bounds);
+  if (scene.sky) add_sky();
+  tree_ = LightTree(bounds);
+}
+
+void LightChoice::add_triangle(std::uint32_t triangle, bool front,
+                               std::vector<LightBound>& bounds) {
+  const auto strength = static_cast<float>(mean_radiance(scene_, world_, triangle, front) *
+                                           static_cast<double>(world_.area(triangle)));
+  if (!(strength > 0.0f) || !std::isfinite(strength)) return;
+  LightBound& bound = bounds.emplace_back();
+  for (int corner = 0; corner < 3; ++corner) {
+    bound.box.add(world_.positions[world_.triangles[triangle][corner]]);
   }
-  if (scene.sky && !is_black(scene.sky->radiance)) {
-    if (scene.sky->texture) {
-      const Texture& texture = scene.textures[index(*scene.sky->texture)];
-      const std::vector<double> weights = sky_weights(texture);
-      double sum = 0.0;
-      for (const double weight : weights) sum += weight;
-      if (sum > 0.0) {
-        sky_choice_ = Distribution2D(weights, texture.width, texture.height);
-        add({Kind::kSky, 0}, sum * disc * static_cast<double>(mean_component(scene.sky->radiance)));
+  bound.axis = glm::normalize(world_.area_vector(triangle)) * (front ? 1.0f : -1.0f);
+  bound.strength = strength;
+  if (leaf_of_.empty()) leaf_of_.resize(world_.size(), {kNoLeaf, kNoLeaf});
+  leaf_of_[triangle][front ? 0 : 1] = static_cast<std::uint32_t>(near_.size());
+  near_.push_back({front ? Kind::kFront : Kind::kBack, triangle});
+}
+
+void LightChoice::add_punctual(std::uint32_t light, std::vector<LightBound>& bounds) {
+  const PunctualLight& punctual = scene_.lights[light];
+  const float strength = mean_component(punctual.intensity);
+  if (!(strength > 0.0f) || !std::isfinite(strength)) return;
+  has_light_ = true;
+  if (punctual.kind == PunctualKind::kDirectional) {
+    distant_.push_back({Kind::kPunctual, light});
+    return;
+  }
+  near_.push_back({Kind::kPunctual, light});
+  LightBound& bound = bounds.emplace_back();
+  bound.box.add(punctual.position);
+  bound.strength = strength;
+  bound.spread = kPi;
+  if (punctual.kind == PunctualKind::kSpot) {
+    bound.axis = glm::normalize(punctual.direction);
+    bound.spread = punctual.outer_angle;
+  }
+}
+
+void LightChoice::add_sky() {
+  if (is_black(scene_.sky->radiance)) return;
+  if (!scene_.sky->texture) {
+    has_light_ = true;
+    return;
+  }
+  const Texture& texture = scene_.textures[index(*scene_.sky->texture)];
+  const std::vector<double> weights = sky_weights(texture);
+  double sum = 0.0;
+  for (const double weight : weights) sum += weight;
+  if (!(sum > 0.0)) return;
+  has_light_ = true;
+  sky_choice_ = Distribution2D(weights, texture.width, texture.height);
+  // A surface sees half of the sphere, at a mean cosine of 1/2.
+  sky_irradiance_ = static_cast<float>(sum) * mean_component(scene_.sky->radiance) * 0.25f;
+  distant_.push_back({Kind::kSky, 0});
+}
+
+/// About what a distant light sends to the point; above zero, as the tree's is.
+float LightChoice::distant_irradiance(std::size_t i, const LitPoint& point) const {
+  if (distant_[i].kind == Kind::kSky) return sky_irradiance_;
+  const PunctualLight& sun = scene_.lights[distant_[i].index];
+  constexpr float kLeastCosine = 0.02f;
+  return mean_component(sun.intensity) *
+         std::max(kLeastCosine, -glm::dot(point.normal, glm::normalize(sun.direction)));
+}
+
+float LightChoice::all_distant_irradiance(const LitPoint& point) const {
+  float sum = 0.0f;
+  for (std::size_t i = 0; i < distant_.size(); ++i) sum += distant_irradiance(i, point);
+  return sum;
+}
+
+LightSample LightChoice::sample(const LitPoint& point, Vec2 u) const {
+  float of_distant = 0.0f;  // the probability that one of them is chosen
+  if (!distant_.empty()) {
+    const float distant = all_distant_irradiance(point);
+    of_distant =
+        tree_.empty() ? 1.0f : distant / (distant + tree_.importance(point.position, point.normal));
+    if (u.x < of_distant) {
+      float at = u.x / of_distant * distant;
+      for (std::size_t i = 0; i < distant_.size(); ++i) {
+        const float irradiance = distant_irradiance(i, point);
+        if (at >= irradiance && i + 1 < distant_.size()) {
+          at -= irradiance;
+          continue;
+        }
+        u.x = std::min(at / irradiance, kBelowOne);
+        return sample_from(distant_[i], of_distant * irradiance / distant, point, u);
       }
-    } else {
-      has_light_ = true;
     }
+    u.x = std::min((u.x - of_distant) / (1.0f - of_distant), kBelowOne);
   }
-  has_light_ |= !sources_.empty();
-  if (sources_.empty()) return;
-  choice_ = Distribution(weights_);
-  for (std::size_t i = 0; i < sources_.size(); ++i) {
-    const Source& source = sources_[i];
-    if (source.kind == Kind::kSky) sky_probability_ = choice_.probability(i);
-    if (source.kind != Kind::kFront && source.kind != Kind::kBack) continue;
-    if (pdf_area_.empty()) pdf_area_.resize(world.size());
-    pdf_area_[source.index][source.kind == Kind::kFront ? 0 : 1] =
-        choice_.probability(i) / world.area(source.index);
-  }
-}
-
-void LightChoice::add(Source source, double flux) {
-  if (!(flux > 0.0) || !std::isfinite(flux)) return;
-  sources_.push_back(source);
-  weights_.push_back(flux);
-}
-
-LightSample LightChoice::sample(const Vec3& point, Vec2 u) const {
-  if (sources_.empty()) return {};
-  const Distribution::Choice chosen = choice_.choose(u.x);
+  if (tree_.empty()) return {};
+  const LightTree::Choice chosen = tree_.choose(point.position, point.normal, u.x);
   u.x = chosen.rest;
-  const Source& source = sources_[chosen.index];
+  return sample_from(near_[chosen.light], (1.0f - of_distant) * chosen.probability, point, u);
+}
+
+LightSample LightChoice::sample_from(const Source& source, float probability, const LitPoint& point,
+                                     Vec2 u) const {
   switch (source.kind) {
     case Kind::kPunctual:
-      return sample_punctual(scene_.lights[source.index], chosen.probability, point);
+      return sample_punctual(scene_.lights[source.index], probability, point.position);
     case Kind::kSky:
-      return sample_sky(chosen.probability, u);
+      return sample_sky(probability, u);
     case Kind::kFront:
     case Kind::kBack:
       break;
   }
-  return sample_triangle(source, chosen.probability, point, u);
+  return sample_triangle(source, probability, point.position, u);
 }
 
 LightSample LightChoice::sample_triangle(const Source& source, float probability, const Vec3& point,
@@ -224,30 +274,39 @@ LightSample LightChoice::sample_sky(float probability, Vec2 u) const {
   sample.far = kInfinity;
   sample.pdf_solid_angle = probability * chosen.pdf / map_to_sphere(chosen.position);
   // Looked up by the direction, as for rays that find it by themselves.
-  sample.radiance = sky(sample.direction).radiance / sample.pdf_solid_angle;
+  sample.radiance = sky_radiance(sample.direction) / sample.pdf_solid_angle;
   return sample;
 }
 
-float LightChoice::pdf_of_hit(std::uint32_t triangle, const Vec3& direction, float distance) const {
-  if (pdf_area_.empty()) return 0.0f;
+float LightChoice::pdf_of_hit(const LitPoint& point, std::uint32_t triangle, const Vec3& direction,
+                              float distance) const {
+  if (leaf_of_.empty()) return 0.0f;
   const Vec3 area_vector = world_.area_vector(triangle);
   const float projected = glm::dot(area_vector, direction);
-  const float pdf_area = pdf_area_[triangle][projected < 0.0f ? 0 : 1];
-  if (pdf_area == 0.0f || projected == 0.0f) return 0.0f;
-  return pdf_area * distance * distance * glm::length(area_vector) / std::abs(projected);
+  const std::uint32_t leaf = leaf_of_[triangle][projected < 0.0f ? 0 : 1];
+  if (leaf == kNoLeaf || projected == 0.0f) return 0.0f;
+  float probability = tree_.probability(leaf, point.position, point.normal);
+  if (!distant_.empty()) {
+    const float near = tree_.importance(point.position, point.normal);
+    probability *= near / (near + all_distant_irradiance(point));
+  }
+  return 2.0f * probability * distance * distance / std::abs(projected);
 }
 
-LightChoice::Sky LightChoice::sky(const Vec3& direction) const {
-  if (!scene_.sky) return {};
-  if (!scene_.sky->texture) return {scene_.sky->radiance, 0.0f};
-  const Vec2 at = lat_long(direction);
+Rgb LightChoice::sky_radiance(const Vec3& direction) const {
+  if (!scene_.sky) return Rgb(0.0f);
+  if (!scene_.sky->texture) return scene_.sky->radiance;
   const Texture& texture = scene_.textures[index(*scene_.sky->texture)];
-  Sky sky;
-  sky.radiance = scene_.sky->radiance * glm::max(Rgb(lantern::sample(texture, at)), Rgb(0.0f));
-  if (sky_probability_ > 0.0f) {
-    sky.pdf_solid_angle = sky_probability_ * sky_choice_.pdf(at) / map_to_sphere(at);
-  }
-  return sky;
+  return scene_.sky->radiance *
+         glm::max(Rgb(lantern::sample(texture, lat_long(direction))), Rgb(0.0f));
+}
+
+float LightChoice::pdf_of_sky(const LitPoint& point, const Vec3& direction) const {
+  if (sky_irradiance_ == 0.0f) return 0.0f;
+  const float near = tree_.empty() ? 0.0f : tree_.importance(point.position, point.normal);
+  const float probability = sky_irradiance_ / (near + all_distant_irradiance(point));
+  const Vec2 at = lat_long(direction);
+  return probability * sky_choice_.pdf(at) / map_to_sphere(at);
 }
 
 }  // namespace lantern

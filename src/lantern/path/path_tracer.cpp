@@ -37,6 +37,7 @@ struct Vertex {
 
 /// A ray on its way to the next vertex.
 struct Extension {
+  LitPoint start;
   Rgb throughput;
   std::uint32_t pixel;
   std::uint32_t bounces;
@@ -74,10 +75,12 @@ class TileTracer {
         rows_(std::min(kTile, options.height - y0)),
         counts_(counts) {}
 
-  void run(PathPass& pass) {
+  /// Stopped it leaves the tile black.
+  void run(const StopFlag& stop, PathPass& pass) {
     const auto pixels = static_cast<std::size_t>(columns_ * rows_);
     std::vector<glm::dvec3> sum(pixels), squares(pixels);
     for (int sample = 0; sample < options_.samples; ++sample) {
+      if (stop.load(std::memory_order_relaxed)) return;
       sample_ = static_cast<std::uint32_t>(sample);
       radiance_.assign(pixels, Rgb(0.0f));
       for (int y = 0; y < rows_; y += kBlock) {
@@ -143,35 +146,35 @@ class TileTracer {
       const Vec3 direction =
           glm::normalize(Vec3(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]));
       if (!hits[i]) {
-        radiance_[pixels[i]] += in_.lights.sky(direction).radiance;
+        radiance_[pixels[i]] += in_.lights.sky_radiance(direction);
         continue;
       }
-      arrive(hits[i], direction, Extension{Rgb(1.0f), pixels[i], 0, 0.0f}, light_points[i]);
+      arrive(hits[i], direction, {{}, Rgb(1.0f), pixels[i], 0, 0.0f}, light_points[i]);
     }
     end_vertices();
   }
 
   /// A path's ray has hit a surface: takes its emission and makes the next vertex.
-  void arrive(const Hit& hit, const Vec3& direction, const Extension& from, Vec2 light_point) {
+  void arrive(const Hit& hit, const Vec3& direction, const Extension& ray, Vec2 light_point) {
     const bool front = glm::dot(in_.world.area_vector(hit.triangle), direction) < 0.0f;
     const Rgb emission = emission_at(in_.scene, in_.world, hit.triangle, hit.uv, front);
     if (!is_black(emission)) {
       float weight = 1.0f;
-      if (from.bounces > 0) {
-        weight = balance(from.pdf_solid_angle,
-                         in_.lights.pdf_of_hit(hit.triangle, direction, hit.distance));
+      if (ray.bounces > 0) {
+        weight = balance(ray.pdf_solid_angle,
+                         in_.lights.pdf_of_hit(ray.start, hit.triangle, direction, hit.distance));
       }
-      radiance_[from.pixel] += from.throughput * emission * weight;
+      radiance_[ray.pixel] += ray.throughput * emission * weight;
     }
     const SurfacePoint surface = surface_at(in_.scene, in_.world, hit.triangle, hit.uv);
-    const Rgb throughput = from.throughput * surface.reflectance;
+    const Rgb throughput = ray.throughput * surface.reflectance;
     if (is_black(throughput)) return;
     const float side = front ? 1.0f : -1.0f;
     const Vec3 geometric = surface.geometric_normal * side;
     // Light paths know no shading normals but where the eye sees them: then all methods agree.
-    const Vec3 shading = from.bounces == 0 ? surface.shading_normal * side : geometric;
+    const Vec3 shading = ray.bounces == 0 ? surface.shading_normal * side : geometric;
     pending_.push_back({off_surface(surface.position, geometric, scale_), shading, geometric,
-                        throughput, from.pixel, from.bounces});
+                        throughput, ray.pixel, ray.bounces});
     light_points_.push_back(light_point);
   }
 
@@ -184,7 +187,8 @@ class TileTracer {
       Rgb lit[kPacket];
       for (std::size_t i = 0; i < n; ++i) {
         const Vertex& v = pending_[first + i];
-        const LightSample light = in_.lights.sample(v.position, light_points_[first + i]);
+        const LightSample light =
+            in_.lights.sample({v.position, v.shading_normal}, light_points_[first + i]);
         const float cos_at_point = glm::dot(v.shading_normal, light.direction);
         if (!(cos_at_point > 0.0f) || !(glm::dot(v.geometric_normal, light.direction) > 0.0f) ||
             is_black(light.radiance)) {
@@ -230,7 +234,8 @@ class TileTracer {
       const Vec3 direction = Frame(v.shading_normal).to_world(local);
       if (!(glm::dot(direction, v.geometric_normal) > 0.0f)) continue;
       light_points[i] = Vec2(u.z, u.w);
-      extensions[i] = {throughput, v.pixel, bounces, local.z * kInvPi};
+      extensions[i] = {
+          {v.position, v.shading_normal}, throughput, v.pixel, bounces, local.z * kInvPi};
       active.lane[i] = -1;
       set_ray(rays, static_cast<int>(i), v.position, direction, kInfinity);
       ++counts_.bounce_rays;
@@ -240,14 +245,14 @@ class TileTracer {
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       if (active.lane[i] == 0) continue;
       const Vec3 direction(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]);
-      const Extension& from = extensions[i];
+      const Extension& ray = extensions[i];
       if (!hits[i]) {
-        const LightChoice::Sky sky = in_.lights.sky(direction);
-        radiance_[from.pixel] +=
-            from.throughput * sky.radiance * balance(from.pdf_solid_angle, sky.pdf_solid_angle);
+        const float weight =
+            balance(ray.pdf_solid_angle, in_.lights.pdf_of_sky(ray.start, direction));
+        radiance_[ray.pixel] += ray.throughput * in_.lights.sky_radiance(direction) * weight;
         continue;
       }
-      arrive(hits[i], direction, from, light_points[i]);
+      arrive(hits[i], direction, ray, light_points[i]);
     }
     end_vertices();
   }
@@ -285,10 +290,9 @@ PathPass trace_paths(const PathInput& input, const PathOptions& options, PathCou
   const auto tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   std::vector<PathCounts> tile_counts(tiles);
   parallel_for(tiles, 1, [&](std::size_t i) {
-    if (stop.load(std::memory_order_relaxed)) return;
     const int x0 = static_cast<int>(i % static_cast<std::size_t>(columns)) * kTile;
     const int y0 = static_cast<int>(i / static_cast<std::size_t>(columns)) * kTile;
-    TileTracer(input, options, points, x0, y0, tile_counts[i]).run(pass);
+    TileTracer(input, options, points, x0, y0, tile_counts[i]).run(stop, pass);
     if (tile_done) {
       tile_done(static_cast<std::size_t>(std::min(kTile, options.width - x0)) *
                 static_cast<std::size_t>(std::min(kTile, options.height - y0)));

@@ -47,8 +47,8 @@ struct PathPass {
   Image squared_radiance;  // empty unless asked for
 };
 
-/// The picture of one pass. Ends early, with black where nothing was done, once `stop` is set;
-/// calls `tile_done` (from any thread) with the number of pixels of each finished tile.
+/// The picture of one pass. Ends early, with black tiles where not all samples were taken, once
+/// `stop` is set; calls `tile_done` (from any thread) with the number of pixels of each tile.
 PathPass trace_paths(const PathInput& input, const PathOptions& options, PathCounts& counts,
                      const StopFlag& stop, const std::function<void(std::size_t)>& tile_done = {});
 
