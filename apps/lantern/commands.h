@@ -19,5 +19,6 @@ void add_lights(CLI::App& app);
 void add_info(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_bench(CLI::App& app);
+void add_bake(CLI::App& app);
 
 }  // namespace lantern::app

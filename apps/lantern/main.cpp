@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
   lantern::app::add_info(app);
   lantern::app::add_compare(app);
   lantern::app::add_bench(app);
+  lantern::app::add_bake(app);
   add_later(app, "view", "Open a scene in a window (not in this version)");
   try {
     app.parse(argc, argv);

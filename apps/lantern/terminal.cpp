@@ -47,8 +47,8 @@ void ProgressBar::show(const Progress& progress) {
   last_ = now;
   drawn_ = true;
   const std::string status =
-      fmt::format("{:3.0f} %  pass {}  {} left", 100.0 * progress.share, progress.passes_done + 1,
-                  time_text(progress.seconds_left));
+      fmt::format("{:3.0f} %  {} {}  {} left", 100.0 * progress.share, progress.pass,
+                  progress.passes_done + 1, time_text(progress.seconds_left));
   if (!terminal_) {
     fmt::print(stderr, "{}\n", status);
     return;

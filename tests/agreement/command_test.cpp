@@ -308,6 +308,52 @@ TEST_F(CommandTest, CompareDrawsTheDifference) {
   expect_failure(compare_to({"--pixels-per-degree", "0"}), 2);
 }
 
+TEST_F(CommandTest, BakesWholeFilesOrNone) {
+  const std::vector<std::string> command = {"bake", own("furnace.scene"), "--patches", "100"};
+  const auto bake = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), command.begin(), command.end());
+    return run(more);
+  };
+  const Outcome outcome = bake({"-o", path("a.glb"), "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_THAT(keys(json), IsSupersetOf({"patches", "shots", "unshot_share", "vertices", "triangles",
+                                        "charts", "radiance_of_white", "bytes"}));
+  EXPECT_LE(json["patches"], 100);
+  EXPECT_EQ(json["bytes"], fs::file_size(folder_ / "a.glb"));
+  EXPECT_EQ(run({"info", path("a.glb")}).code, 0);
+  ASSERT_EQ(bake({"-o", path("v.glb"), "--bake", "vertices"}).code, 0);
+  EXPECT_LT(fs::file_size(folder_ / "v.glb"), fs::file_size(folder_ / "a.glb"));
+  fs::remove(folder_ / "a.glb");
+  fs::remove(folder_ / "v.glb");
+
+  expect_failure(bake({"-o", path("a.gltf")}), 1, "a.gltf");
+  expect_failure(bake({"-o", path("no/folder/a.glb")}), 1, "no/folder");
+  expect_failure(bake({"-o", path("a.glb"), "--lightmap", "4"}), 1, "lightmap");
+  expect_failure(bake({"-o", path("a.glb"), "--lightmap", "0"}), 2, "--lightmap");
+  expect_failure(bake({"-o", path("a.glb"), "--patch-size", "0"}), 2, "--patch-size");
+  expect_failure(bake({"-o", path("a.glb"), "--bake", "paint"}), 2, "--bake");
+  expect_failure(bake({}), 2, "--output");
+  write_file(folder_ / "dark.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  expect_failure(run({"bake", path("dark.obj"), "-o", path("a.glb")}), 1, "--emitter");
+  EXPECT_THAT(files(), testing::ElementsAre("dark.obj"));
+  if (!fs::exists("/dev/full")) return;
+  fs::create_symlink("/dev/full", folder_ / "full.glb");
+  expect_failure(bake({"-o", path("full.glb")}), 1, "full.glb");
+}
+
+TEST_F(CommandTest, WritesTheBakedWhenInterrupted) {
+  const Running running = start({"bake", own("cornell_box.scene"), "-o", path("a.glb"), "--patches",
+                                 "3000", "--cutoff", "1e-9", "--lightmap", "64"});
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  ::kill(running.process, SIGINT);
+  const Outcome outcome = finish(running);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("stopped early"));
+  EXPECT_GT(fs::file_size(folder_ / "a.glb"), 0u);
+}
+
 TEST_F(CommandTest, MeasuresConvergence) {
   write_image(folder_ / "reference.pfm", Image(8, 6, Rgb(2.0f)));  // what the furnace's file says
   const auto bench = [&](std::vector<std::string> more) {

@@ -50,5 +50,6 @@ Bytes encode_exr(const Image& image, const WriteOptions& options, const std::str
 Bytes encode_hdr(const Image& image, const WriteOptions& options);
 Bytes encode_pfm(const Image& image);
 Bytes encode_png(const Image& image, const WriteOptions& options, const std::string& name);
+Bytes encode_png(int width, int height, std::span<const std::uint8_t> rgba);
 
 }  // namespace lantern::codec

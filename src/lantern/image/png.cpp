@@ -7,6 +7,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <cassert>
 #include <csetjmp>
 #include <cstring>
 
@@ -110,29 +111,44 @@ struct Texts {
   std::vector<png_text> texts;
 };
 
-void to_row(const Image& image, int y, const Tone& tone, std::uint8_t* row) {
-  for (int x = 0; x < image.width; ++x) {
-    const auto bytes = to_srgb8(image.at(x, y), tone);
-    row = std::copy(bytes.begin(), bytes.end(), row);
-  }
-}
+/// 8-bit channels, row by row.
+struct Pixels {
+  int width, height;
+  int channels;  // 3: RGB, 4: RGBA
+  const std::uint8_t* bytes;
+};
 
-bool write_all(Writer& writer, const Image& image, const Tone& tone, Texts& texts,
-               std::uint8_t* row) {
+bool write_all(Writer& writer, const Pixels& pixels, Texts& texts) {
   png_structp png = writer.png;
   if (setjmp(png_jmpbuf(png))) return false;
-  png_set_IHDR(png, writer.info, static_cast<png_uint_32>(image.width),
-               static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png, writer.info, static_cast<png_uint_32>(pixels.width),
+               static_cast<png_uint_32>(pixels.height), 8,
+               pixels.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_set_text(png, writer.info, texts.texts.data(), static_cast<int>(texts.texts.size()));
   png_write_info(png, writer.info);
-  for (int y = 0; y < image.height; ++y) {
-    to_row(image, y, tone, row);
-    png_write_row(png, row);
+  const auto row =
+      static_cast<std::size_t>(pixels.channels) * static_cast<std::size_t>(pixels.width);
+  for (int y = 0; y < pixels.height; ++y) {
+    png_write_row(png, pixels.bytes + row * static_cast<std::size_t>(y));
   }
   png_write_end(png, nullptr);
   return true;
+}
+
+Bytes encode(const Pixels& pixels, const Metadata& metadata, const std::string& name) {
+  Texts texts(metadata);
+  for (const std::string& key : texts.keys) {
+    if (key.size() > kLongestKey) fail({name}, "PNG has no room for the key {}", key);
+  }
+  Bytes bytes;
+  Writer writer;
+  png_set_write_fn(writer.png, &bytes, append, flush_nothing);
+  if (!write_all(writer, pixels, texts)) {
+    fail({name}, "cannot be written as PNG: {}", writer.problem.text);
+  }
+  return bytes;
 }
 
 /// libpng makes room for a chunk as long as it claims to be. A chunk is its length, a name of 4
@@ -226,18 +242,18 @@ Metadata png_metadata(View bytes, const std::string& name) {
 }
 
 Bytes encode_png(const Image& image, const WriteOptions& options, const std::string& name) {
-  Texts texts(options.metadata);
-  for (const std::string& key : texts.keys) {
-    if (key.size() > kLongestKey) fail({name}, "PNG has no room for the key {}", key);
+  std::vector<std::uint8_t> rgb;
+  rgb.reserve(3 * image.pixels.size());
+  for (const Rgb& radiance : image.pixels) {
+    const auto shown = to_srgb8(radiance, options.tone);
+    rgb.insert(rgb.end(), shown.begin(), shown.end());
   }
-  Bytes bytes;
-  std::vector<std::uint8_t> row(3 * static_cast<std::size_t>(image.width));
-  Writer writer;
-  png_set_write_fn(writer.png, &bytes, append, flush_nothing);
-  if (!write_all(writer, image, options.tone, texts, row.data())) {
-    fail({name}, "cannot be written as PNG: {}", writer.problem.text);
-  }
-  return bytes;
+  return encode({image.width, image.height, 3, rgb.data()}, options.metadata, name);
+}
+
+Bytes encode_png(int width, int height, std::span<const std::uint8_t> rgba) {
+  assert(rgba.size() == 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  return encode({width, height, 4, rgba.data()}, {}, "a texture");
 }
 
 }  // namespace lantern::codec

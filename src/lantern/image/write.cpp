@@ -36,4 +36,8 @@ void write_image(const std::filesystem::path& path, const Image& image,
   write_file(path, encode(path, image, options));
 }
 
+std::vector<std::byte> encode_png(int width, int height, std::span<const std::uint8_t> rgba) {
+  return codec::encode_png(width, height, rgba);
+}
+
 }  // namespace lantern

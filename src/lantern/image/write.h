@@ -6,7 +6,11 @@
 #include "lantern/image/image.h"
 #include "lantern/image/tone.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <span>
+#include <vector>
 
 namespace lantern {
 
@@ -26,5 +30,8 @@ void require_image_format(const std::filesystem::path& path);
 /// Float EXR and PFM keep every value, also those that are not finite.
 void write_image(const std::filesystem::path& path, const Image& image,
                  const WriteOptions& options = {});
+
+/// The bytes of a PNG file: sRGB colours and alpha, 4 bytes a pixel, row by row.
+std::vector<std::byte> encode_png(int width, int height, std::span<const std::uint8_t> rgba);
 
 }  // namespace lantern

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/pipeline/convergence.h"
 
-#include "lantern/pipeline/chart.h"
+#include "lantern/pipeline/plot.h"
 
 #include <fmt/format.h>
 
@@ -25,24 +25,24 @@ double processor_seconds() {
 const char* name(Effort effort) { return effort == Effort::kSeconds ? "seconds" : "lights"; }
 
 /// A series per method, in the order in which they first appear.
-Chart chart_of(std::span<const ConvergencePoint> points, Effort effort, const std::string& scene) {
-  Chart chart;
-  chart.title = effort == Effort::kSeconds ? scene + ": error over time"
-                                           : scene + ": error over the lights of one pass";
-  chart.x_label = name(effort);
-  chart.y_label = "relmse";
+Plot plot_of(std::span<const ConvergencePoint> points, Effort effort, const std::string& scene) {
+  Plot plot;
+  plot.title = effort == Effort::kSeconds ? scene + ": error over time"
+                                          : scene + ": error over the lights of one pass";
+  plot.x_label = name(effort);
+  plot.y_label = "relmse";
   for (const ConvergencePoint& point : points) {
     if (point.run.effort != effort) continue;
-    auto series = std::find_if(chart.series.begin(), chart.series.end(),
+    auto series = std::find_if(plot.series.begin(), plot.series.end(),
                                [&](const Series& s) { return s.name == point.run.method; });
-    if (series == chart.series.end()) {
-      series = chart.series.insert(series, {point.run.method, {}});
+    if (series == plot.series.end()) {
+      series = plot.series.insert(series, {point.run.method, {}});
     }
     const double x =
         effort == Effort::kSeconds ? point.seconds : static_cast<double>(point.statistics.lights);
     series->points.emplace_back(x, point.error.relmse);
   }
-  return chart;
+  return plot;
 }
 
 }  // namespace
@@ -81,12 +81,12 @@ std::string to_csv(std::span<const ConvergencePoint> points) {
 }
 
 std::string to_svg(std::span<const ConvergencePoint> points, const std::string& scene) {
-  std::vector<Chart> charts;
+  std::vector<Plot> plots;
   for (const Effort effort : {Effort::kSeconds, Effort::kLights}) {
-    Chart chart = chart_of(points, effort, scene);
-    if (!chart.series.empty()) charts.push_back(std::move(chart));
+    Plot plot = plot_of(points, effort, scene);
+    if (!plot.series.empty()) plots.push_back(std::move(plot));
   }
-  return to_svg(charts);
+  return to_svg(plots);
 }
 
 }  // namespace lantern

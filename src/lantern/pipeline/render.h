@@ -118,6 +118,7 @@ struct Progress {
   double share = 0.0;         // of the work, in [0, 1]
   double seconds_left = 0.0;  // expected
   std::size_t passes_done = 0;
+  const char* pass = "pass";  // what is counted
 };
 /// Called from any thread, one call at a time.
 using ProgressReport = std::function<void(const Progress&)>;

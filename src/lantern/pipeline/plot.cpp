@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lantern/pipeline/chart.h"
+#include "lantern/pipeline/plot.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 namespace lantern {
 namespace {
 
-// Pixels of one chart and of the area inside its axes.
+// Pixels of one plot and of the area inside its axes.
 constexpr double kWidth = 520.0, kHeight = 420.0;
 constexpr double kLeft = 70.0, kRight = 20.0, kTop = 40.0, kBottom = 56.0;
 constexpr double kLegendLine = 18.0;
@@ -126,12 +126,12 @@ std::string marker(std::size_t series, double x, double y) {
   }
 }
 
-void draw(const Chart& chart, double left, std::string& out) {
+void draw(const Plot& plot, double left, std::string& out) {
   const auto to = std::back_inserter(out);
   const double x0 = left + kLeft, x1 = left + kWidth - kRight;
   const double y0 = kTop, y1 = kHeight - kBottom;
   Axis x(x0, x1), y(y1, y0);
-  for (const Series& series : chart.series) {
+  for (const Series& series : plot.series) {
     for (const glm::dvec2& point : series.points) {
       if (!has_place(point)) continue;
       x.add(point.x);
@@ -142,7 +142,7 @@ void draw(const Chart& chart, double left, std::string& out) {
   y.finish();
 
   fmt::format_to(to, "<text x=\"{:.2f}\" y=\"22\" class=\"title\">{}</text>\n", 0.5 * (x0 + x1),
-                 escaped(chart.title));
+                 escaped(plot.title));
   const auto line = [&](double xa, double ya, double xb, double yb, bool labelled) {
     fmt::format_to(to, "<path d=\"M{:.2f} {:.2f}L{:.2f} {:.2f}\" class=\"{}\"/>\n", xa, ya, xb, yb,
                    labelled ? "major" : "minor");
@@ -164,15 +164,15 @@ void draw(const Chart& chart, double left, std::string& out) {
   fmt::format_to(to, "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" class=\"frame\"/>\n", x0,
                  y0, x1 - x0, y1 - y0);
   fmt::format_to(to, "<text x=\"{:.2f}\" y=\"{:.2f}\" class=\"x\">{}</text>\n", 0.5 * (x0 + x1),
-                 kHeight - 18.0, escaped(chart.x_label));
+                 kHeight - 18.0, escaped(plot.x_label));
   const double label_x = left + 18.0, label_y = 0.5 * (y0 + y1);
   fmt::format_to(to,
                  "<text x=\"{0:.2f}\" y=\"{1:.2f}\" class=\"x\" transform=\"rotate(-90 {0:.2f} "
                  "{1:.2f})\">{2}</text>\n",
-                 label_x, label_y, escaped(chart.y_label));
+                 label_x, label_y, escaped(plot.y_label));
 
-  for (std::size_t i = 0; i < chart.series.size(); ++i) {
-    const Series& series = chart.series[i];
+  for (std::size_t i = 0; i < plot.series.size(); ++i) {
+    const Series& series = plot.series[i];
     const char* colour = kColours[i % kColours.size()];
     std::string joined, marks;
     for (const glm::dvec2& point : series.points) {
@@ -187,7 +187,7 @@ void draw(const Chart& chart, double left, std::string& out) {
                      marks);
     }
     // Errors fall from left to right, so the legend has the lower left corner.
-    const double row = y1 - 14.0 - kLegendLine * static_cast<double>(chart.series.size() - 1 - i);
+    const double row = y1 - 14.0 - kLegendLine * static_cast<double>(plot.series.size() - 1 - i);
     fmt::format_to(to, "{}<text x=\"{:.2f}\" y=\"{:.2f}\" class=\"legend\">{}</text>\n</g>\n",
                    marker(i, x0 + 16.0, row), x0 + 28.0, row + 4.0, escaped(series.name));
   }
@@ -195,8 +195,8 @@ void draw(const Chart& chart, double left, std::string& out) {
 
 }  // namespace
 
-std::string to_svg(std::span<const Chart> charts) {
-  const double width = kWidth * static_cast<double>(std::max<std::size_t>(charts.size(), 1));
+std::string to_svg(std::span<const Plot> plots) {
+  const double width = kWidth * static_cast<double>(std::max<std::size_t>(plots.size(), 1));
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} "
       "{1}\">\n"
@@ -206,8 +206,8 @@ std::string to_svg(std::span<const Chart> charts) {
       ".line{{fill:none;stroke-width:2}}</style>\n"
       "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
       width, kHeight);
-  for (std::size_t i = 0; i < charts.size(); ++i)
-    draw(charts[i], kWidth * static_cast<double>(i), out);
+  for (std::size_t i = 0; i < plots.size(); ++i)
+    draw(plots[i], kWidth * static_cast<double>(i), out);
   return out + "</svg>\n";
 }
 

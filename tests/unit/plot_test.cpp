@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lantern/pipeline/chart.h"
+#include "lantern/pipeline/plot.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@ namespace {
 /// A drawing read back: an XML parser finds every element closed and every text escaped.
 class Drawing {
  public:
-  explicit Drawing(const std::vector<Chart>& charts) {
-    const std::string svg = to_svg(charts);
+  explicit Drawing(const std::vector<Plot>& plots) {
+    const std::string svg = to_svg(plots);
     EXPECT_EQ(document_.Parse(svg.c_str()), tinyxml2::XML_SUCCESS) << document_.ErrorStr();
     collect(document_.RootElement());
   }
@@ -54,7 +54,7 @@ class Drawing {
   std::size_t circles_ = 0;
 };
 
-TEST(Chart, EqualFactorsAreEqualSteps) {
+TEST(Plot, EqualFactorsAreEqualSteps) {
   const Drawing drawing({{"t", "x", "y", {{"a", {{1, 1}, {10, 0.1}, {100, 0.01}, {1000, 1e-3}}}}}});
   ASSERT_EQ(drawing.lines().size(), 1u);
   const auto& p = drawing.lines()[0];
@@ -69,7 +69,7 @@ TEST(Chart, EqualFactorsAreEqualSteps) {
   EXPECT_EQ(drawing.circles(), 5u);
 }
 
-TEST(Chart, NamesWhatItShows) {
+TEST(Plot, NamesWhatItShows) {
   const Drawing drawing(
       {{"Box & co", "seconds", "error < 1", {{"a", {{1, 1}}}, {"b", {{20, 0.5}}}}}});
   EXPECT_THAT(drawing.texts(),
@@ -77,7 +77,7 @@ TEST(Chart, NamesWhatItShows) {
   EXPECT_THAT(drawing.texts(), testing::IsSupersetOf({"1", "2", "5", "10", "20", "0.5"}));
 }
 
-TEST(Chart, PointsLieInsideTheDrawing) {
+TEST(Plot, PointsLieInsideTheDrawing) {
   for (const double spread : {1.0, 1.001, 3.0, 1e9}) {
     const Drawing drawing(
         {{"t", "x", "y", {{"a", {{0.07, 7e-5}, {0.07 * spread, 7e-5 / spread}}}}}});
@@ -90,20 +90,20 @@ TEST(Chart, PointsLieInsideTheDrawing) {
   }
 }
 
-TEST(Chart, LeavesOutWhatHasNoLogarithm) {
+TEST(Plot, LeavesOutWhatHasNoLogarithm) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Drawing drawing({{"t", "x", "y", {{"a", {{1, 0}, {2, nan}, {-1, 3}, {3, 4}, {5, 6}}}}}});
   EXPECT_EQ(drawing.lines().at(0).size(), 2u);
 }
 
-TEST(Chart, MayBeEmpty) {
+TEST(Plot, MayBeEmpty) {
   EXPECT_TRUE(Drawing({}).lines().empty());
   EXPECT_TRUE(Drawing({{"t", "x", "y", {{"a", {}}}}}).lines().empty());
 }
 
-TEST(Chart, SeveralStandSideBySide) {
-  const Chart chart{"t", "x", "y", {{"a", {{1, 1}, {2, 2}}}}};
-  const Drawing one({chart}), two({chart, chart});
+TEST(Plot, SeveralStandSideBySide) {
+  const Plot plot{"t", "x", "y", {{"a", {{1, 1}, {2, 2}}}}};
+  const Drawing one({plot}), two({plot, plot});
   EXPECT_EQ(two.width(), 2.0 * one.width());
   EXPECT_EQ(two.height(), one.height());
   EXPECT_NEAR(two.lines()[1][0].x, two.lines()[0][0].x + one.width(), 0.011);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Lines over two logarithmic axes as an SVG picture of its own: ticks, a legend, colours that most
 // eyes tell apart. Points that are not positive and finite have no place on such axes and are left
-// out; a chart may be empty.
+// out; a plot may be empty.
 #pragma once
 
 #include "lantern/core/math.h"
@@ -17,14 +17,14 @@ struct Series {
   std::vector<glm::dvec2> points;  // joined in this order
 };
 
-struct Chart {
+struct Plot {
   std::string title;
   std::string x_label;
   std::string y_label;
   std::vector<Series> series;
 };
 
-/// The charts side by side.
-std::string to_svg(std::span<const Chart> charts);
+/// The plots side by side.
+std::string to_svg(std::span<const Plot> plots);
 
 }  // namespace lantern
