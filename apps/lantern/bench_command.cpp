@@ -21,6 +21,8 @@ struct Arguments {
   SceneArguments scene;
   CameraArguments camera;
   std::string reference;
+  double reference_seconds = 0.0;  // 0: not given
+  std::string size = "256x256";
   std::vector<std::string> methods;
   std::vector<double> seconds, lights;
   std::size_t pool = 16;
@@ -39,13 +41,25 @@ RenderOptions render_options(const Arguments& arguments, const std::string& meth
   return options;
 }
 
+/// Samples of a pixel in a pass of small ones, or in the one picture of a solution.
+int samples_in_time(Method method) {
+  switch (method) {
+    case Method::kInstantRadiosity:
+      return 1;
+    case Method::kPath:
+      return kPathSamplesInTime;
+    default:
+      return 16;
+  }
+}
+
 /// Small passes, as many as the time allows.
 ConvergenceRun in_time(const Arguments& arguments, const std::string& method, double seconds) {
   ConvergenceRun run{method, Effort::kSeconds, seconds, render_options(arguments, method)};
   constexpr std::size_t kPathsOfPass = 32;
   run.options.passes = 0;
+  run.options.samples = samples_in_time(run.options.method);
   run.options.seconds = seconds;
-  if (run.options.method == Method::kPath) run.options.samples = kPathSamplesInTime;
   run.options.lights.paths = kPathsOfPass;
   run.options.lights.pool = arguments.pool;
   return run;
@@ -63,6 +77,7 @@ bool has_lights(Method method) { return method == Method::kInstantRadiosity; }
 
 void check(Arguments& arguments) {
   arguments.scene.check();
+  parse_size(arguments.size);
   if (arguments.methods.empty()) arguments.methods = available_methods();
   for (const std::string& method : arguments.methods) method_of(method);
   if (arguments.seconds.empty() && arguments.lights.empty()) {
@@ -76,6 +91,17 @@ void check(Arguments& arguments) {
     }
     require_writable(out);
   }
+}
+
+/// Read, or made by the judge with a seed that no measured render has.
+Image make_reference(const Arguments& arguments, const Scene& scene, const StopFlag& stop) {
+  if (!arguments.reference.empty()) return read_image(arguments.reference);
+  constexpr std::uint64_t kOwnSeed = 0x5eed;
+  RenderOptions options = in_time(arguments, "path", arguments.reference_seconds).options;
+  std::tie(options.width, options.height) = parse_size(arguments.size);
+  options.path.seed = kOwnSeed;
+  ProgressBar bar(arguments.scene.quiet);
+  return render(scene, options, stop, [&](const Progress& p) { bar.show(p); }).image;
 }
 
 void print_head() {
@@ -125,8 +151,8 @@ void run_convergence(Arguments& arguments) {
   ThreadScope threads(arguments.scene.threads);
   threads.run([&] {
     const StopFlag& stop = stop_on_interrupt();
-    const Image reference = read_image(arguments.reference);
     const Loaded loaded = arguments.scene.load_scene_now();
+    const Image reference = make_reference(arguments, loaded.scene, stop);
     print_head();
     const std::vector<ConvergencePoint> points =
         measure_all(arguments, loaded.scene, reference, stop);
@@ -145,7 +171,17 @@ void add_convergence(CLI::App& bench) {
       "convergence", "Error over time and over lights against a reference picture");
   a.scene.add_to(*command);
   a.camera.add_to(*command);
-  command->add_option("--reference", a.reference, "The picture to compare with")->required();
+  CLI::Option_group* reference = command->add_option_group("reference");
+  CLI::Option* file =
+      reference->add_option("--reference", a.reference, "The picture to compare with");
+  reference
+      ->add_option("--reference-seconds", a.reference_seconds,
+                   "Make it by path tracing for so many seconds")
+      ->check(finite(1e-3, 1e9));
+  reference->require_option(1);
+  command->add_option("--size", a.size, "WxH of a reference that is made")
+      ->capture_default_str()
+      ->excludes(file);
   const auto add_list = [&](const char* name, auto& values, const char* what) {
     return command->add_option(name, values, what)->delimiter(',')->allow_extra_args(false);
   };

@@ -371,6 +371,11 @@ TEST_F(CommandTest, MeasuresConvergence) {
   EXPECT_THAT(csv, HasSubstr("\ninstant-radiosity,lights,64,"));
   EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 4);
   EXPECT_THAT(read_text(folder_ / "c.svg"), testing::StartsWith("<svg "));
+  const Outcome computed = run({"bench", "convergence", own("furnace.scene"), "--reference-seconds",
+                                "0.2", "--size", "8x6", "--lights", "64", "--quiet"});
+  EXPECT_EQ(computed.code, 0) << computed.err;
+  EXPECT_EQ(std::count(computed.out.begin(), computed.out.end(), '\n'), 2);
+  expect_failure(bench({"--reference-seconds", "1"}), 2, "reference");
   expect_failure(bench({"-o", path("c.txt")}), 1, "c.txt");
   expect_failure(bench({"--lights", "0"}), 2, "--lights");
   expect_failure(bench({"--seconds", "1,soon"}), 2, "--seconds");
