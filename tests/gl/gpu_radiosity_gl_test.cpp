@@ -2,6 +2,9 @@
 // Radiosity on the GPU: its parts against rays, its light against closed forms and the matrix.
 #include "lantern/core/parallel.h"
 #include "lantern/gl/context.h"
+#include "lantern/image/compare.h"
+#include "lantern/pipeline/render.h"
+#include "lantern/radiosity/display.h"
 #include "lantern/radiosity/external_light.h"
 #include "lantern/radiosity/form_factors.h"
 #include "lantern/radiosity/hemicube.h"
@@ -306,6 +309,40 @@ TEST(GpuRadiosity, NeverLightsWhatNothingIsSeenFrom) {
       EXPECT_EQ(irradiance[e].g, 0.0) << e;
     }
   }
+}
+
+TEST(GpuRadiosity, PicturesGetBetterAsTexelsGetSmaller) {
+  const gl::Context context;
+  constexpr int kSize = 48;
+  const Scene scene = furnished_room(true);
+  RenderOptions options;
+  options.camera.eye = Vec3(1.0f, 1.0f, 4.5f);
+  options.camera.target = Vec3(1.0f, 1.0f, 0.0f);
+  options.width = options.height = kSize;
+  options.samples = 4;
+  options.passes = 8;
+  options.bound = 5.0f;
+  options.compensate = true;
+  const StopFlag stop{false};
+  const Image reference = render(scene, options, stop).image;
+  const auto error = [&](std::size_t count) {
+    const Patched room(scene, count);
+    GpuRadiosity radiosity = room.radiosity(quick());
+    while (radiosity.shoot()) {
+    }
+    const Camera camera =
+        choose_camera(room.stage.scene, room.stage.world, *room.stage.tracer, options.camera, 1.0f);
+    const Display display(room.stage.scene, room.stage.world, room.patches);
+    const Image image = display.draw(camera, radiosity.irradiance(),
+                                     {.width = kSize, .height = kSize, .samples = 16}, stop);
+    return compare(image, reference).relmse;
+  };
+  // A shadow's edge is as wide as an element: the square of that is the share of its pixels.
+  // Thirteen times the elements and a factor of three leaves much of it to the noise of the
+  // reference.
+  const double coarse = error(60), fine = error(800);
+  EXPECT_LT(3.0 * fine, coarse);
+  EXPECT_LT(fine, 0.01);
 }
 
 }  // namespace
