@@ -21,7 +21,7 @@ constexpr NamedMethod kMethods[] = {
     {"radiosity-matrix", std::nullopt},
     {"radiosity-hemicube", Method::kRadiosityHemicube},
     {"radiosity-progressive", Method::kRadiosityProgressive},
-    {"radiosity-gpu", std::nullopt},
+    {"radiosity-gpu", Method::kRadiosityGpu},
 };
 
 /// An option that not every method knows, and those that do.
@@ -41,11 +41,14 @@ const std::vector<SpecialOption>& special_options() {
       {"--lights-from", {Method::kInstantRadiosity}},
       {"--single-rays", {Method::kInstantRadiosity}},
       {"--variance", {Method::kPath}},
-      {"--patches", {Method::kRadiosityHemicube, Method::kRadiosityProgressive}},
-      {"--patch-size", {Method::kRadiosityHemicube, Method::kRadiosityProgressive}},
-      {"--hemicube", {Method::kRadiosityHemicube, Method::kRadiosityProgressive}},
-      {"--cutoff", {Method::kRadiosityProgressive}},
-      {"--no-ambient", {Method::kRadiosityProgressive}},
+      {"--patches",
+       {Method::kRadiosityHemicube, Method::kRadiosityProgressive, Method::kRadiosityGpu}},
+      {"--patch-size",
+       {Method::kRadiosityHemicube, Method::kRadiosityProgressive, Method::kRadiosityGpu}},
+      {"--hemicube",
+       {Method::kRadiosityHemicube, Method::kRadiosityProgressive, Method::kRadiosityGpu}},
+      {"--cutoff", {Method::kRadiosityProgressive, Method::kRadiosityGpu}},
+      {"--no-ambient", {Method::kRadiosityProgressive, Method::kRadiosityGpu}},
   };
   return options;
 }

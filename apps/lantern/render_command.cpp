@@ -124,6 +124,7 @@ RenderOptions render_options(const Arguments& arguments) {
       break;
     case Method::kRadiosityHemicube:
     case Method::kRadiosityProgressive:
+    case Method::kRadiosityGpu:
       add_radiosity(arguments, options);
       break;
   }
@@ -142,12 +143,17 @@ void add_instant_radiosity(const Arguments& arguments, const RenderOptions& opti
   if (!arguments.lights_from.empty()) metadata["lights-from"] = arguments.lights_from;
 }
 
+/// Whether it sends out flux shot by shot, as against solving a matrix.
+bool shoots(Method method) {
+  return method == Method::kRadiosityProgressive || method == Method::kRadiosityGpu;
+}
+
 void add_radiosity(const RenderOptions& options, const RenderStatistics& statistics,
                    Metadata& metadata) {
   const RadiosityOptions& radiosity = options.radiosity;
   metadata.insert({{"patches", std::to_string(statistics.radiosity.patches)},
                    {"hemicube", std::to_string(radiosity.hemicube.resolution)}});
-  if (options.method == Method::kRadiosityProgressive) {
+  if (shoots(options.method)) {
     metadata.insert({{"cutoff", fmt::format("{}", radiosity.cutoff)},
                      {"shots", std::to_string(statistics.radiosity.shots)},
                      {"unshot", fmt::format("{:.3g}", statistics.radiosity.unshot_share)},
@@ -184,6 +190,7 @@ Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
       break;
     case Method::kRadiosityHemicube:
     case Method::kRadiosityProgressive:
+    case Method::kRadiosityGpu:
       add_radiosity(options, statistics, metadata);
       break;
   }
@@ -193,7 +200,7 @@ Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
 nlohmann::json radiosity_json(Method method, const RadiosityStatistics& s) {
   nlohmann::json out = {
       {"patches", s.patches}, {"elements", s.elements}, {"hemicubes", s.hemicubes}};
-  if (method == Method::kRadiosityProgressive) {
+  if (shoots(method)) {
     out["shots"] = s.shots;
     out["unshot_share"] = s.unshot_share;
     out["conservation_error"] = s.conservation_error;

@@ -216,7 +216,12 @@ TEST_F(CommandTest, TracesPathsAndWritesTheirVariance) {
 }
 
 TEST_F(CommandTest, RadiosityTellsStatisticsAsJson) {
-  for (const std::string method : {"hemicube", "progressive"}) {
+#ifdef LANTERN_WITH_GL
+  const std::vector<std::string> methods = {"hemicube", "progressive", "gpu"};
+#else
+  const std::vector<std::string> methods = {"hemicube", "progressive"};
+#endif
+  for (const std::string& method : methods) {
     const Outcome outcome =
         run(radiosity(method, {"--json", "--patches", "100", "--hemicube", "32"}));
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -638,6 +643,7 @@ TEST_F(CommandTest, SaysInOneLineThatNoOpenGlIsThere) {
         Variables{{"MESA_GL_VERSION_OVERRIDE", "2.1"}, {"MESA_GLES_VERSION_OVERRIDE", "2.0"}}}) {
     for (const auto& [name, value] : variables) ::setenv(name, value, 1);
     expect_failure(run({"info", "--gl"}), 1, "no usable OpenGL: ");
+    expect_failure(run(radiosity("gpu", {})), 1, "no usable OpenGL: ");
     for (const auto& [name, value] : variables) ::unsetenv(name);
   }
 }

@@ -5,6 +5,7 @@
 #include "lantern/pipeline/render_instant_radiosity.h"
 #include "lantern/pipeline/render_job.h"
 #include "lantern/pipeline/render_path.h"
+#include "lantern/pipeline/render_radiosity_gpu.h"
 #include "lantern/pipeline/render_radiosity_hemicube.h"
 #include "lantern/pipeline/render_radiosity_progressive.h"
 #include "lantern/trace/embree.h"
@@ -44,6 +45,8 @@ Rendered render(const Scene& scene, const RenderOptions& options, const StopFlag
       return render_radiosity_hemicube(job);
     case Method::kRadiosityProgressive:
       return render_radiosity_progressive(job);
+    case Method::kRadiosityGpu:
+      return render_radiosity_gpu(job);
   }
   assert(false);
   return {};

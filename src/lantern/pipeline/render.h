@@ -28,6 +28,7 @@ enum class Method {
   kPath,                  // [Kajiya 1986]
   kRadiosityHemicube,     // [Cohen & Greenberg 1985]
   kRadiosityProgressive,  // [Cohen et al. 1988]
+  kRadiosityGpu,          // [Coombe et al. 2004]
 };
 
 /// How lights are made (instant radiosity).
@@ -49,9 +50,9 @@ struct PathTracing {
 /// How surfaces are cut into patches and light is exchanged between these (radiosity).
 struct RadiosityOptions {
   PatchOptions patches;
-  HemicubeOptions hemicube;  // hemicube, progressive
-  double cutoff = 1e-3;      // progressive: the share of the flux emitted that may stay unshot
-  bool ambient = true;       // progressive: what is unshot lights all surfaces alike
+  HemicubeOptions hemicube;
+  double cutoff = 1e-3;  // progressive, gpu: the share of the flux emitted that may stay unshot
+  bool ambient = true;   // progressive, gpu: what is unshot lights all surfaces alike
 };
 
 struct RenderOptions {

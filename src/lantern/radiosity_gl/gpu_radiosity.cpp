@@ -11,7 +11,9 @@
 #include "lantern/radiosity_gl/reduction.h"
 #include "lantern/radiosity_gl/texels.h"
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace lantern {
 namespace {
@@ -42,6 +44,7 @@ class GpuRadiosity::Work {
 
   bool shoot();
   std::vector<glm::dvec3> irradiance() const;
+  glm::dvec3 ambient() const;
 
   std::size_t shots_ = 0;
   double unshot_share_ = 1.0;
@@ -310,6 +313,31 @@ std::vector<glm::dvec3> GpuRadiosity::Work::irradiance() const {
   return result;
 }
 
+glm::dvec3 GpuRadiosity::Work::ambient() const {
+  double total = 0.0;
+  glm::dvec3 reflecting(0.0), unshot = balance_.unshot;
+  for (std::size_t i = 0; i < size(); ++i) {
+    total += area(i);
+    reflecting += area(i) * reflectance(i);
+  }
+  for (std::size_t c = 0; c < next_in_round_; ++c) {
+    for (std::size_t i = round_[c].first; i < round_[c].first + round_[c].count; ++i) {
+      unshot -= area(i) * unshot_[i];
+    }
+  }
+  return unshot / (total - reflecting);
+}
+
+double GpuFluxBalance::error() const {
+  double largest = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    if (emitted[c] == 0.0) continue;
+    largest =
+        std::max(largest, std::abs(absorbed[c] + lost[c] + unshot[c] - emitted[c]) / emitted[c]);
+  }
+  return largest;
+}
+
 GpuRadiosity::GpuRadiosity(const World& world, const Tracer& tracer, const Patches& patches,
                            std::span<const glm::dvec3> external,
                            const GpuRadiosityOptions& options) {
@@ -335,5 +363,6 @@ std::size_t GpuRadiosity::shots() const { return work_->shots_; }
 double GpuRadiosity::unshot_share() const { return work_->unshot_share_; }
 GpuFluxBalance GpuRadiosity::balance() const { return work_->balance_; }
 std::vector<glm::dvec3> GpuRadiosity::irradiance() const { return work_->irradiance(); }
+glm::dvec3 GpuRadiosity::ambient() const { return work_->ambient(); }
 
 }  // namespace lantern

@@ -27,6 +27,9 @@ struct GpuRadiosityOptions {
 /// element is) or unshot.
 struct GpuFluxBalance {
   glm::dvec3 emitted{0.0}, absorbed{0.0}, lost{0.0}, unshot{0.0};
+
+  /// Of the channel where it is largest, relative to the flux emitted.
+  double error() const;
 };
 
 class GpuRadiosity {
@@ -50,6 +53,10 @@ class GpuRadiosity {
 
   /// W/m² per channel of each element, what came so far.
   std::vector<glm::dvec3> irradiance() const;
+  /// An estimate of the irradiance still to come, the same everywhere: what is unshot, spread over
+  /// all area and reflected in a room of the mean reflectance. [Cohen et al. 1988, equations 5 to
+  /// 8]
+  glm::dvec3 ambient() const;
 
  private:
   class Work;
