@@ -49,6 +49,9 @@ const std::vector<SpecialOption>& special_options() {
        {Method::kRadiosityHemicube, Method::kRadiosityProgressive, Method::kRadiosityGpu}},
       {"--cutoff", {Method::kRadiosityProgressive, Method::kRadiosityGpu}},
       {"--no-ambient", {Method::kRadiosityProgressive, Method::kRadiosityGpu}},
+      {"--shadows", {Method::kInstantRadiosity}},
+      {"--tile", {Method::kInstantRadiosity}},
+      {"--gl-device", {Method::kInstantRadiosity}},
   };
   return options;
 }

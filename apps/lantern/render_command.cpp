@@ -32,6 +32,9 @@ struct Arguments {
   int samples = 0;         // 0: not given
   std::string method = "instant-radiosity";
   std::string backend = "cpu";
+  std::string shadows = "stencil";
+  int tile = 4;
+  int gl_device = -1;
   CameraArguments camera;
   std::optional<float> bound;
   bool compensate = false;
@@ -85,6 +88,9 @@ void add_instant_radiosity(const Arguments& arguments, RenderOptions& options) {
       arguments.bound.value_or(arguments.compensate ? kUsualBoundCompensated : kUsualBound);
   options.compensate = arguments.compensate;
   options.shadow_rays = arguments.single_rays ? ShadowRays::kSingle : ShadowRays::kPackets;
+  options.backend = arguments.backend == "gl" ? Backend::kGl : Backend::kCpu;
+  if (arguments.shadows == "interleaved") options.tile = arguments.tile;
+  if (arguments.gl_device >= 0) options.gl_device = arguments.gl_device;
 }
 
 void add_path(const Arguments& arguments, RenderOptions& options) {
@@ -139,7 +145,10 @@ void add_instant_radiosity(const Arguments& arguments, const RenderOptions& opti
                    {"bound", fmt::format("{}", options.bound)},
                    {"compensate", options.compensate ? "yes" : "no"},
                    {"sampler", arguments.lights.sampler},
-                   {"jitter", arguments.lights.jitter ? "yes" : "no"}});
+                   {"jitter", arguments.lights.jitter ? "yes" : "no"},
+                   {"backend", arguments.backend}});
+  if (options.backend == Backend::kGl) metadata["shadows"] = arguments.shadows;
+  if (options.tile > 1) metadata["tile"] = std::to_string(options.tile);
   if (!arguments.lights_from.empty()) metadata["lights-from"] = arguments.lights_from;
 }
 
@@ -248,13 +257,27 @@ void require_variance_format(const Arguments& arguments) {
   }
 }
 
+/// What means nothing to shadow rays or to GL is wrong usage there.
+void check_backend(const CLI::App& command, const Arguments& arguments) {
+  const bool gl = arguments.backend == "gl";
+  if (gl && method_of(arguments.method) != Method::kInstantRadiosity) {
+    throw UsageError(fmt::format("--backend gl means nothing to --method {}", arguments.method));
+  }
+  const std::vector<const char*> of_other = gl ? std::vector{"--compensate", "--single-rays"}
+                                               : std::vector{"--shadows", "--tile", "--gl-device"};
+  if (arguments.shadows != "interleaved" && command.count("--tile") > 0) {
+    throw UsageError("--tile takes --shadows interleaved");
+  }
+  for (const char* option : of_other) {
+    if (command.count(option) == 0) continue;
+    throw UsageError(fmt::format("{} means nothing to --backend {}", option, arguments.backend));
+  }
+}
+
 void run(const CLI::App& command, Arguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   refuse_options_of_others(command, arguments.method);
-  if (arguments.backend != "cpu") {
-    throw UsageError(
-        fmt::format("--backend {} is not available in this version", arguments.backend));
-  }
+  check_backend(command, arguments);
   arguments.scene.check();
   RenderOptions options = render_options(arguments);
   check_format(arguments.out, require_image_format);
@@ -326,6 +349,15 @@ void add_render(CLI::App& app) {
   command->add_option("--backend", a.backend, "cpu or gl")
       ->check(CLI::IsMember({"cpu", "gl"}))
       ->capture_default_str();
+  command
+      ->add_option("--shadows", a.shadows, "How --backend gl finds shadows: stencil, interleaved")
+      ->check(CLI::IsMember({"stencil", "interleaved"}))
+      ->capture_default_str();
+  command->add_option("--tile", a.tile, "Pixels a side that share the lights, if interleaved")
+      ->check(CLI::IsMember({2, 4, 8}))
+      ->capture_default_str();
+  command->add_option("--gl-device", a.gl_device, "A device of `lantern info --gl`, by its number")
+      ->check(CLI::Range(0, 1'000'000));
   a.camera.add_to(*command);
   command
       ->add_option(

@@ -3,6 +3,7 @@
 
 #include "lantern/core/hash.h"
 #include "lantern/gather/term_bound.h"
+#include "lantern/sampling/kronecker.h"
 #include "lantern/sampling/warp.h"
 #include "lantern/scene/surface.h"
 #include "lantern/trace/eye.h"
@@ -21,16 +22,6 @@ constexpr int kBlock = 4;  // pixels along the side of a packet
 constexpr int kTile = 32;  // pixels along the side of what one task works on
 static_assert(kBlock * kBlock == kPacket && kTile % kBlock == 0);
 
-/// The n-th member of the Kronecker sequence of a pair of irrationals, shifted.
-Vec2 kronecker(std::uint64_t n, glm::dvec2 irrational, Vec2 shift) {
-  const glm::dvec2 u = glm::fract(static_cast<double>(n) * irrational + glm::dvec2(shift));
-  return glm::min(Vec2(u), Vec2(kBelowOne));
-}
-
-/// Powers of the plastic number: the first n points are well spread for every n. [Roberts 2018, The
-/// Unreasonable Effectiveness of Quasirandom Sequences]
-constexpr double kPlastic = 1.32471795724474602596;
-constexpr glm::dvec2 kPixelSequence(1.0 / kPlastic, 1.0 / (kPlastic * kPlastic));
 /// Cube roots of 3 and 5, independent of the former over the rationals, so that what is traced is
 /// not tied to where in the pixel it starts.
 constexpr glm::dvec2 kCompensationSequence(1.44224957030740838232, 1.70997594667669698935);
@@ -83,7 +74,7 @@ class TileGatherer {
     const auto n =
         static_cast<std::uint64_t>(options_.pass) * static_cast<std::uint64_t>(options_.samples) +
         static_cast<std::uint64_t>(sample);
-    const Vec2 offset = kronecker(n, kPixelSequence, Vec2(0.5f));
+    const Vec2 offset = place_in_pixel(n);
     RayPacket rays{};
     LaneMask active{};
     std::uint32_t pixels[kPacket];

@@ -29,6 +29,11 @@ Feature feature(const char* name, bool es, std::initializer_list<const char*> ex
   return {name, ""};
 }
 
+Feature newer_feature(const char* name, bool core, const char* extension) {
+  if (core) return {name, "core"};
+  return {name, epoxy_has_gl_extension(extension) ? extension : ""};
+}
+
 }  // namespace
 
 bool Info::has(const std::string& feature) const {
@@ -60,6 +65,8 @@ Info query_info() {
       feature(kFloatBlending, info.es, {"GL_EXT_float_blend"}),
       feature(kFloatFiltering, info.es, {"GL_OES_texture_float_linear"}),
       feature(kDepthClamp, info.es, {"GL_EXT_depth_clamp"}),
+      newer_feature(kClipControl, !info.es && epoxy_gl_version() >= 45,
+                    info.es ? "GL_EXT_clip_control" : "GL_ARB_clip_control"),
       feature(kTimers, info.es, {"GL_EXT_disjoint_timer_query"}),
   };
   info.limits = {

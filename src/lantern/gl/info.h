@@ -34,6 +34,7 @@ inline constexpr const char* kFloatTargets = "float targets";      // draw into 
 inline constexpr const char* kFloatBlending = "float blending";    // and blend there
 inline constexpr const char* kFloatFiltering = "float filtering";  // bilinear 32-bit floats
 inline constexpr const char* kDepthClamp = "depth clamp";
+inline constexpr const char* kClipControl = "clip control";  // depth in [0, 1] before its write
 inline constexpr const char* kTimers = "timers";
 inline constexpr const char* kTextureSize = "texture size";
 

@@ -33,6 +33,9 @@ FormatData data_of(Format format) {
       return {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 1, 4, false};
     case Format::kRgba32ui:
       return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 4, 4, false};
+    case Format::kDepth32fStencil8:
+      return {
+          GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, 1, 8, false};
     case Format::kDepth32f:
       break;
   }
@@ -69,11 +72,18 @@ void delete_texture(GLuint id) { glDeleteTextures(1, &id); }
 void delete_framebuffer(GLuint id) { glDeleteFramebuffers(1, &id); }
 void delete_vertex_array(GLuint id) { glDeleteVertexArrays(1, &id); }
 
-Buffer::Buffer(std::span<const std::byte> bytes) : handle_(make_buffer()) {
-  glBindBuffer(GL_ARRAY_BUFFER, id());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(),
+Buffer::Buffer(std::span<const std::byte> bytes) : handle_(make_buffer()) { write_bytes(bytes); }
+
+void Buffer::write_bytes(std::span<const std::byte> bytes) {
+  // WebGL ties a buffer to the kind of its first target, but for this one.
+  glBindBuffer(GL_COPY_WRITE_BUFFER, id());
+  glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(),
                GL_STATIC_DRAW);
-  check("making a buffer");
+  check("writing a buffer");
+}
+
+void Buffer::bind_as_uniforms(GLuint binding) const {
+  glBindBufferBase(GL_UNIFORM_BUFFER, binding, id());
 }
 
 Texture::Texture(Format format, int width, int height, const TextureOptions& options)
@@ -153,7 +163,11 @@ Framebuffer::Framebuffer(std::initializer_list<const Texture*> colours, const Te
     targets.push_back(target);
     colours_.push_back(colour->format());
   }
-  if (depth) attach(GL_DEPTH_ATTACHMENT, *depth);
+  if (depth) {
+    attach(depth->format() == Format::kDepth32fStencil8 ? GL_DEPTH_STENCIL_ATTACHMENT
+                                                        : GL_DEPTH_ATTACHMENT,
+           *depth);
+  }
   if (targets.empty()) targets.push_back(GL_NONE);
   glDrawBuffers(static_cast<GLsizei>(targets.size()), targets.data());
   const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
@@ -184,19 +198,23 @@ void Framebuffer::read_bytes(std::size_t i, void* texels) const {
   check("reading pixels");
 }
 
-VertexArray::VertexArray(std::initializer_list<Attribute> attributes)
+VertexArray::VertexArray(std::initializer_list<Attribute> attributes, const Buffer* indices)
     : handle_(make_vertex_array()) {
   bind();
-  for (const Attribute& attribute : attributes) {
-    glBindBuffer(GL_ARRAY_BUFFER, attribute.buffer->id());
-    glEnableVertexAttribArray(attribute.location);
-    if (attribute.integer) {
-      glVertexAttribIPointer(attribute.location, attribute.channels, GL_UNSIGNED_INT, 0, nullptr);
-    } else {
-      glVertexAttribPointer(attribute.location, attribute.channels, GL_FLOAT, GL_FALSE, 0, nullptr);
-    }
-  }
+  if (indices) glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices->id());
+  for (const Attribute& attribute : attributes) add(attribute);
   check("making a vertex array");
+}
+
+void VertexArray::add(const Attribute& attribute) const {
+  bind();
+  glBindBuffer(GL_ARRAY_BUFFER, attribute.buffer->id());
+  glEnableVertexAttribArray(attribute.location);
+  if (attribute.integer) {
+    glVertexAttribIPointer(attribute.location, attribute.channels, GL_UNSIGNED_INT, 0, nullptr);
+  } else {
+    glVertexAttribPointer(attribute.location, attribute.channels, GL_FLOAT, GL_FALSE, 0, nullptr);
+  }
 }
 
 void VertexArray::bind() const { glBindVertexArray(handle_.id()); }

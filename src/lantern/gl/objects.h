@@ -46,14 +46,24 @@ class Buffer {
   template <typename T>
   explicit Buffer(std::span<const T> values) : Buffer(std::as_bytes(values)) {}
 
+  /// Other contents, of any length; what draws from the old ones still does.
+  template <typename T>
+  void write(std::span<const T> values) {
+    write_bytes(std::as_bytes(values));
+  }
+  /// As the uniform block with this binding.
+  void bind_as_uniforms(GLuint binding) const;
+
   GLuint id() const { return handle_.id(); }
 
  private:
+  void write_bytes(std::span<const std::byte> bytes);
+
   Handle<delete_buffer> handle_;
 };
 
 /// What a texel is. The formats that one can draw into (floats on ES: where kFloatTargets is).
-enum class Format { kRgba8, kR32f, kRgba32f, kR32ui, kRgba32ui, kDepth32f };
+enum class Format { kRgba8, kR32f, kRgba32f, kR32ui, kRgba32ui, kDepth32f, kDepth32fStencil8 };
 
 struct TextureOptions {
   bool linear = false;   // bilinear, 32-bit floats where kFloatFiltering is; else nearest
@@ -133,10 +143,12 @@ struct Attribute {
 
 class VertexArray {
  public:
-  /// Without attributes: for shaders that make their vertices of gl_VertexID. The buffers must
-  /// outlive the array.
-  explicit VertexArray(std::initializer_list<Attribute> attributes = {});
+  /// Without attributes: for shaders that make their vertices of gl_VertexID. `indices` are 32 bits
+  /// each. The buffers must outlive the array.
+  explicit VertexArray(std::initializer_list<Attribute> attributes = {},
+                       const Buffer* indices = nullptr);
 
+  void add(const Attribute& attribute) const;
   void bind() const;
 
  private:

@@ -108,6 +108,11 @@ void Program::set(const char* sampler, int unit, const Texture& texture) const {
   texture.bind(unit);
   set(sampler, unit);
 }
+void Program::set_block(const char* block, GLuint binding) const {
+  const GLuint at = glGetUniformBlockIndex(handle_.id(), block);
+  assert(at != GL_INVALID_INDEX);
+  glUniformBlockBinding(handle_.id(), at, binding);
+}
 
 void draw_full_screen(const VertexArray& without_attributes) {
   without_attributes.bind();

@@ -38,6 +38,8 @@ class Program {
   void set(const char* uniform, const Mat4& value) const;
   /// A sampler's texture, by way of this unit.
   void set(const char* sampler, int unit, const Texture& texture) const;
+  /// A uniform block's binding; see Buffer::bind_as_uniforms().
+  void set_block(const char* block, GLuint binding) const;
 
  private:
   GLint location(const char* uniform) const;

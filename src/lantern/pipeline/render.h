@@ -31,6 +31,12 @@ enum class Method {
   kRadiosityGpu,          // [Coombe et al. 2004]
 };
 
+/// What gathers the lights (instant radiosity).
+enum class Backend {
+  kCpu,  // shadow rays
+  kGl,   // shadow volumes in OpenGL
+};
+
 /// How lights are made (instant radiosity).
 struct LightOptions {
   std::size_t paths = 256;
@@ -70,6 +76,9 @@ struct RenderOptions {
   float bound = 0.0f;
   bool compensate = false;
   ShadowRays shadow_rays = ShadowRays::kPackets;
+  Backend backend = Backend::kCpu;
+  int tile = 1;                  // GL: so many pixels a side share the lights
+  std::optional<int> gl_device;  // of those that `lantern info --gl` names; none: the first usable
 
   PathTracing path;
   RadiosityOptions radiosity;

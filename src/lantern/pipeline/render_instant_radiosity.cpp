@@ -4,6 +4,7 @@
 #include "lantern/core/error.h"
 #include "lantern/lights/emitters.h"
 #include "lantern/lights/resample.h"
+#include "lantern/pipeline/gl_gather.h"
 #include "lantern/pipeline/passes.h"
 #include "lantern/scene/surface.h"
 #include "lantern/trace/embree.h"
@@ -65,6 +66,34 @@ VirtualLights lights_of_pass(const WalkInput& in, WalkOptions walk_with, std::si
   return lights;
 }
 
+using PixelsDone = std::function<void(std::size_t)>;
+using GatherPass =
+    std::function<Image(const VirtualLights& lights, std::size_t pass, const PixelsDone& done)>;
+
+GatherPass make_gather(const RenderJob& job, const Emitters& emitters, GatherCounts& rays) {
+  const RenderOptions& options = job.options;
+  if (options.backend == Backend::kGl) {
+    const auto by_gl = std::make_shared<GlGather>(job, emitters);
+    return [by_gl](const VirtualLights& lights, std::size_t pass, const PixelsDone& done) {
+      return by_gl->gather(lights, pass, done);
+    };
+  }
+  GatherOptions gather_with;
+  gather_with.width = options.width;
+  gather_with.height = options.height;
+  gather_with.samples = options.samples;
+  gather_with.bound = options.bound;
+  gather_with.compensate = options.compensate;
+  gather_with.seed = options.lights.points.seed;
+  gather_with.shadow_rays = options.shadow_rays;
+  return [&, gather_with](const VirtualLights& lights, std::size_t pass,
+                          const PixelsDone& done) mutable {
+    gather_with.pass = pass;
+    const GatherInput input{job.scene, job.world, job.tracer, emitters, job.camera};
+    return gather(input, lights, gather_with, rays, job.stop, done);
+  };
+}
+
 }  // namespace
 
 Rendered render_instant_radiosity(const RenderJob& job) {
@@ -75,18 +104,10 @@ Rendered render_instant_radiosity(const RenderJob& job) {
   if (!options.given_lights) require_light(!emitters.empty());
   const WalkInput walk_in{job.scene, job.world, job.tracer, emitters};
   const WalkOptions walk_with = walk_options(job.scene, job.world, options.lights, result.warnings);
-  const GatherInput input{job.scene, job.world, job.tracer, emitters, job.camera};
-  GatherOptions gather_with;
-  gather_with.width = options.width;
-  gather_with.height = options.height;
-  gather_with.samples = options.samples;
-  gather_with.bound = options.bound;
-  gather_with.compensate = options.compensate;
-  gather_with.seed = options.lights.points.seed;
-  gather_with.shadow_rays = options.shadow_rays;
+  GatherCounts rays;
+  const GatherPass gather_pass = make_gather(job, emitters, rays);
   statistics.seconds_prepare = job.watch.seconds();
 
-  GatherCounts rays;
   Passes passes(job);
   while (passes.next()) {
     const Stopwatch lights_watch;
@@ -98,9 +119,8 @@ Rendered render_instant_radiosity(const RenderJob& job) {
     statistics.seconds_lights += lights_watch.seconds();
 
     const Stopwatch gather_watch;
-    gather_with.pass = passes.number();
-    const Image image = gather(input, lights, gather_with, rays, job.stop,
-                               [&](std::size_t pixels) { passes.pixels_done(pixels); });
+    const Image image = gather_pass(lights, passes.number(),
+                                    [&](std::size_t pixels) { passes.pixels_done(pixels); });
     statistics.seconds_gather += gather_watch.seconds();
     if (!passes.add(image)) break;
     statistics.lights += lights.size();

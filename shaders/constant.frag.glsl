@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+uniform vec4 u_value;
+layout(location = 0) out vec4 o_value;
+void main() { o_value = u_value; }

@@ -1,0 +1,3 @@
+// SPDX-License-Identifier: MIT
+// For what is drawn into depth or stencil alone.
+void main() {}

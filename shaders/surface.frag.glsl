@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// The surface that a pixel sees, as lantern/scene/surface.h says it: where it is (lifted off it, as
+// shadow rays start), its two normals on the side that is seen, what it reflects and emits.
+#include "shaders/octahedral.glsl"
+#include "shaders/texture.glsl"
+
+in vec3 v_position;
+flat in vec3 v_geometric_normal;
+in vec3 v_normal;
+in vec2 v_texcoord;
+in vec4 v_colour;
+
+uniform vec3 u_eye;
+uniform float u_lift;
+uniform vec3 u_reflectance;
+uniform vec3 u_emission;
+uniform bool u_double_sided;
+uniform bool u_vertex_colours;
+uniform sampler2D u_reflectance_texture;
+uniform sampler2D u_emission_texture;
+// (how it wraps in u and in v, 1: sRGB bytes, 1: there is one)
+uniform vec4 u_reflectance_look_up;
+uniform vec4 u_emission_look_up;
+
+layout(location = 0) out uvec4 o_point;       // position's bits, shading normal
+layout(location = 1) out uvec4 o_reflectance; // its bits, geometric normal
+layout(location = 2) out vec4 o_emission;     // radiance, 1
+
+vec3 looked_up(sampler2D image, vec4 how) {
+  if (how.w == 0.0) return vec3(1.0);
+  return sample_texture(image, v_texcoord, ivec2(how.xy), how.z != 0.0).rgb;
+}
+
+void main() {
+  bool front = dot(v_geometric_normal, v_position - u_eye) < 0.0;
+  vec3 geometric = v_geometric_normal;
+  vec3 shading = geometric;
+  // Shorter than this the vertices disagree so much that their mean says nothing.
+  const float kShortest = 1e-3;
+  float size = length(v_normal);
+  if (size > kShortest) {
+    shading = v_normal / size;
+    if (dot(shading, geometric) < 0.0) shading = -shading;
+  }
+  float side = front ? 1.0 : -1.0;
+  vec3 reflectance = u_reflectance * looked_up(u_reflectance_texture, u_reflectance_look_up);
+  if (u_vertex_colours) reflectance *= v_colour.rgb;
+  reflectance = clamp(reflectance, 0.0, 1.0);
+  vec3 emission = u_emission;
+  if (!front && !u_double_sided) emission = vec3(0.0);
+  emission *= looked_up(u_emission_texture, u_emission_look_up);
+
+  vec3 lifted = v_position + geometric * (side * u_lift);
+  o_point = uvec4(floatBitsToUint(lifted), pack_unit(shading * side));
+  o_reflectance = uvec4(floatBitsToUint(reflectance), pack_unit(geometric * side));
+  o_emission = vec4(emission, 1.0);
+}

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// What GL is told before something is drawn. What is not said is off.
+#pragma once
+
+#include "lantern/raster/view.h"
+
+namespace lantern {
+
+enum class DepthUse { kNone, kDraw, kTest };  // kTest: pass what is nearer, write nothing
+enum class StencilUse {
+  kNone,
+  kCountPassing,  // +1 for fronts that are nearer, -1 for backs
+  kCountHidden,   // +1 for backs that are not nearer, -1 for fronts
+  kTake           // pass where it is `reference`, and zero it everywhere
+};
+
+struct DrawState {
+  DepthUse depth = DepthUse::kNone;
+  StencilUse stencil = StencilUse::kNone;
+  int reference = 0;
+  bool swap_sides = false;  // fronts are backs
+  bool colour = true;
+  bool add = false;
+  bool depth_clamp = false;
+};
+
+/// Until the next call. `view` decides which depth is near.
+void apply(const DrawState& state, const View& view);
+
+/// GL as it starts, and as others expect it.
+void reset_draw_state();
+
+/// Depth of what is infinitely far.
+float far_depth(const View& view);
+
+}  // namespace lantern

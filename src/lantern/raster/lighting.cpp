@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "lantern/raster/lighting.h"
+
+#include "lantern/gl/check.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace lantern {
+namespace {
+
+constexpr GLuint kLightsBinding = 0;
+
+gl::Program shade_program(const gl::ShaderFiles& files, LightFormula formula) {
+  gl::Program program(files, "shaders/full_screen.vert.glsl", "shaders/shade.frag.glsl",
+                      {{"KIND", std::to_string(static_cast<int>(formula))}});
+  program.set_block("Lights", kLightsBinding);
+  return program;
+}
+
+}  // namespace
+
+Lighting::Lighting(const Surfaces& surfaces, StencilShadows& shadows, const gl::ShaderFiles& files,
+                   int width, int height)
+    : surfaces_(surfaces),
+      shadows_(shadows),
+      g_buffer_(width, height),
+      mask_(gl::Format::kRgba8, width, height),
+      mask_framebuffer_({&mask_}, &g_buffer_.depth),
+      shade_{shade_program(files, LightFormula::kSurface),
+             shade_program(files, LightFormula::kPunctual),
+             shade_program(files, LightFormula::kDirectional)},
+      light_block_(std::span<const LightRecord>()),
+      irradiance_{Target(gl::Format::kRgba32f, width, height),
+                  Target(gl::Format::kRgba32f, width, height)} {}
+
+void Lighting::draw(const View& view, std::span<const LightGroup> groups,
+                    const std::function<bool()>& group_done) {
+  surfaces_.draw(view, g_buffer_);
+  irradiance_[0].framebuffer.bind();
+  const float none[4] = {};
+  glClearBufferfv(GL_COLOR, 0, none);
+  for (const LightGroup& group : groups) {
+    shadows_.draw(group.points, view, mask_framebuffer_);
+    add(group);
+    if (!group_done()) break;
+  }
+}
+
+/// What the lights of the mask's bits give.
+void Lighting::add(const LightGroup& group) {
+  std::array<LightRecord, kLightsInGroup> records;
+  std::copy(group.records.begin(), group.records.end(), records.begin());
+  light_block_.write(std::span<const LightRecord>(records));
+  light_block_.bind_as_uniforms(kLightsBinding);
+  const gl::Program& program = shade_[static_cast<std::size_t>(group.formula)];
+  program.set("u_points", 0, g_buffer_.points);
+  program.set("u_reflectances", 1, g_buffer_.reflectances);
+  program.set("u_mask", 2, mask_);
+  program.set("u_sum", 3, irradiance_[0].texture);
+  program.set("u_count", static_cast<int>(group.records.size()));
+  irradiance_[1].framebuffer.bind();
+  gl::draw_full_screen(no_vertices_);
+  std::swap(irradiance_[0], irradiance_[1]);
+  gl::check("shading");
+}
+
+}  // namespace lantern

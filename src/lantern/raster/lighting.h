@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// What a view sees and how much light gets there: surfaces into a G-buffer, which lights each pixel
+// sees as bits of a mask, 32 lights shaded at a time.
+#pragma once
+
+#include "lantern/gl/objects.h"
+#include "lantern/gl/program.h"
+#include "lantern/raster/raster_lights.h"
+#include "lantern/raster/stencil_shadows.h"
+#include "lantern/raster/surfaces.h"
+#include "lantern/raster/view.h"
+
+#include <array>
+#include <functional>
+#include <span>
+
+namespace lantern {
+
+/// A picture that one draws into.
+struct Target {
+  gl::Texture texture;
+  gl::Framebuffer framebuffer;
+
+  Target(gl::Format format, int width, int height)
+      : texture(format, width, height), framebuffer({&texture}) {}
+};
+
+class Lighting {
+ public:
+  /// Keeps references to `surfaces` and `shadows`. Views must have this size.
+  Lighting(const Surfaces& surfaces, StencilShadows& shadows, const gl::ShaderFiles& files,
+           int width, int height);
+
+  /// Calls `group_done` after each group; once it returns false the rest is left out.
+  void draw(const View& view, std::span<const LightGroup> groups,
+            const std::function<bool()>& group_done);
+
+  const GBuffer& g_buffer() const { return g_buffer_; }
+  /// In W/m², RGBA32F.
+  const Target& irradiance() const { return irradiance_[0]; }
+
+ private:
+  void add(const LightGroup& group);
+
+  const Surfaces& surfaces_;
+  StencilShadows& shadows_;
+  GBuffer g_buffer_;
+  gl::Texture mask_;
+  gl::Framebuffer mask_framebuffer_;
+  std::array<gl::Program, kLightFormulas> shade_;
+  gl::Buffer light_block_;
+  std::array<Target, 2> irradiance_;  // what there is, and that with a group of lights more
+  gl::VertexArray no_vertices_;
+};
+
+}  // namespace lantern

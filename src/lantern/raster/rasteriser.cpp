@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include "lantern/raster/rasteriser.h"
+
+#include "lantern/core/error.h"
+#include "lantern/gl/check.h"
+#include "lantern/gl/program.h"
+#include "lantern/raster/interleaving.h"
+#include "lantern/raster/lighting.h"
+#include "lantern/raster/raster_lights.h"
+#include "lantern/raster/stencil_shadows.h"
+#include "lantern/raster/surfaces.h"
+#include "lantern/sampling/kronecker.h"
+#include "lantern/scene/surface.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace lantern {
+namespace {
+
+void require_solid(const Scene& scene, const World& world) {
+  for (const MaterialId id : world.materials) {
+    const Material& material = scene.materials[index(id)];
+    if (!has_holes(material)) continue;
+    throw Error(
+        fmt::format("shadow volumes know no holes, and material '{}' has them: use --backend cpu",
+                    material.name));
+  }
+}
+
+VirtualLights subset(const VirtualLights& lights, std::span<const std::uint32_t> chosen) {
+  VirtualLights few;
+  few.paths = lights.paths;
+  few.reflectivity = lights.reflectivity;
+  for (const std::uint32_t i : chosen) {
+    few.position.push_back(lights.position[i]);
+    few.normal.push_back(lights.normal[i]);
+    few.flux.push_back(lights.flux[i]);
+    few.path.push_back(lights.path[i]);
+    few.bounce.push_back(lights.bounce[i]);
+    few.kind.push_back(lights.kind[i]);
+    few.cone.push_back(lights.cone[i]);
+  }
+  return few;
+}
+
+/// The lights of each pixel of a tile, row by row; a tile of one pixel has them all.
+std::vector<std::vector<LightGroup>> groups_of_tile(const VirtualLights& lights,
+                                                    std::span<const float> bounds, float scale,
+                                                    int tile, std::size_t turn) {
+  if (tile == 1) return {group_lights(lights, bounds, scale)};
+  std::vector<std::vector<LightGroup>> groups;
+  for (const std::vector<std::uint32_t>& chosen :
+       share_out(lights, static_cast<std::size_t>(tile * tile), turn)) {
+    std::vector<float> few_bounds;
+    for (const std::uint32_t i : chosen)
+      few_bounds.push_back(bounds.empty() ? kInfinity : bounds[i]);
+    groups.push_back(group_lights(subset(lights, chosen), few_bounds, scale));
+  }
+  return groups;
+}
+
+/// What a tile of several pixels takes.
+struct Interleaved {
+  GBuffer g_buffer;  // of the whole picture
+  Interleaving interleaving;
+
+  Interleaved(const gl::ShaderFiles& files, const RasterOptions& options, float radius)
+      : g_buffer(options.width, options.height),
+        interleaving(files, options.width, options.height, options.tile, radius) {}
+};
+
+}  // namespace
+
+struct Rasteriser::State {
+  const World& world;
+  RasterOptions options;
+  ViewOptions view_options;
+  gl::ShaderFiles files;
+  Surfaces surfaces;
+  StencilShadows shadows;
+  Lighting lighting;
+  std::optional<Interleaved> interleaved;
+  gl::Program resolve;
+  Target radiance;
+  gl::VertexArray no_vertices;
+
+  State(const Scene& scene, const World& all, const gl::Info& gl, const RasterOptions& with)
+      : world(all),
+        options(with),
+        view_options{.width = with.width,
+                     .height = with.height,
+                     .step = with.tile,
+                     .radius = all.bounds.radius(),
+                     .range = gl.has(gl::kClipControl) ? ClipRange::kFarIs0 : ClipRange::kFarIs1},
+        surfaces(scene, all, files),
+        shadows(all, files,
+                gl.has(gl::kDepthClamp) ? VolumeMethod::kFromEye : VolumeMethod::kFromBehind),
+        lighting(surfaces, shadows, files, view_options.columns(), view_options.rows()),
+        resolve(files, "shaders/full_screen.vert.glsl", "shaders/resolve.frag.glsl"),
+        radiance(gl::Format::kRgba32f, with.width, with.height) {
+    if (with.tile > 1) interleaved.emplace(files, with, all.bounds.radius());
+  }
+
+  /// The radiance of one sample of all pixels.
+  void draw(const Camera& camera, Vec2 offset, std::span<const std::vector<LightGroup>> groups,
+            const std::function<bool()>& group_done) {
+    ViewOptions of_share = view_options;
+    of_share.offset = offset;
+    for (int y = 0; y < options.tile; ++y) {
+      for (int x = 0; x < options.tile; ++x) {
+        of_share.first = {x, y};
+        lighting.draw(make_view(camera, of_share),
+                      groups[static_cast<std::size_t>(y * options.tile + x)], group_done);
+        if (interleaved) interleaved->interleaving.take(lighting.irradiance(), x, y);
+      }
+    }
+    if (!interleaved) {
+      draw_radiance(lighting.g_buffer(), lighting.irradiance());
+      return;
+    }
+    ViewOptions whole = view_options;
+    whole.offset = offset;
+    whole.step = 1;
+    surfaces.draw(make_view(camera, whole), interleaved->g_buffer);
+    draw_radiance(interleaved->g_buffer, interleaved->interleaving.filter(interleaved->g_buffer));
+  }
+
+  void draw_radiance(const GBuffer& g_buffer, const Target& irradiance) {
+    resolve.set("u_reflectances", 0, g_buffer.reflectances);
+    resolve.set("u_emissions", 1, g_buffer.emissions);
+    resolve.set("u_irradiance", 2, irradiance.texture);
+    radiance.framebuffer.bind();
+    gl::draw_full_screen(no_vertices);
+    gl::check("drawing the radiance");
+  }
+};
+
+Rasteriser::Rasteriser(const Scene& scene, const World& world, const gl::Info& gl,
+                       const RasterOptions& options) {
+  require_solid(scene, world);
+  if (!gl.has(gl::kFloatTargets)) {
+    throw Error("this OpenGL cannot draw into float textures; use --backend cpu");
+  }
+  state_ = std::make_unique<State>(scene, world, gl, options);
+}
+
+Rasteriser::~Rasteriser() = default;
+
+Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
+                       std::span<const float> bounds, std::size_t pass, const StopFlag& stop,
+                       const std::function<void(std::size_t)>& pixels_done) {
+  State& s = *state_;
+  const RasterOptions& options = s.options;
+  Image image(options.width, options.height);
+  std::size_t reported = 0;
+  for (int sample = 0; sample < options.samples && !(sample > 0 && stop.load()); ++sample) {
+    const std::size_t n =
+        pass * static_cast<std::size_t>(options.samples) + static_cast<std::size_t>(sample);
+    const auto groups = groups_of_tile(lights, bounds, s.world.coordinate_scale(), options.tile, n);
+    std::size_t steps = 0, step = 0;
+    for (const auto& of_pixel : groups) steps += of_pixel.size();
+    s.draw(camera, place_in_pixel(n), groups, [&] {
+      const std::size_t done = image.pixels.size() *
+                               (static_cast<std::size_t>(sample) * steps + ++step) /
+                               (static_cast<std::size_t>(options.samples) * steps);
+      if (pixels_done) pixels_done(done - std::exchange(reported, done));
+      return !stop.load();
+    });
+    const std::vector<float> rgba = s.radiance.framebuffer.read<float>();
+    const float share = 1.0f / static_cast<float>(options.samples);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+      image.pixels[i] += share * Rgb(rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]);
+    }
+  }
+  return image;
+}
+
+}  // namespace lantern

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// (Scene, VirtualLights) -> Image by GL: the surfaces into a G-buffer, which lights each pixel sees
+// as bits of a mask, 32 lights shaded at a time. Needs a current gl::Context. [Keller 1997, with
+// the accumulation buffer's 8 bits replaced by floats]
+#pragma once
+
+#include "lantern/core/parallel.h"
+#include "lantern/gl/info.h"
+#include "lantern/image/image.h"
+#include "lantern/lights/virtual_lights.h"
+#include "lantern/scene/scene.h"
+#include "lantern/scene/world.h"
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+
+namespace lantern {
+
+struct RasterOptions {
+  int width = 512;
+  int height = 512;
+  int samples = 1;  // per pixel and pass
+  int tile = 1;     // tile x tile pixels share the lights; 1: every sample against all of them
+};
+
+class Rasteriser {
+ public:
+  /// Keeps references to `scene` and `world`. Throws Error for what volumes cannot do (casters with
+  /// holes) and where GL lacks what is needed.
+  Rasteriser(const Scene& scene, const World& world, const gl::Info& gl,
+             const RasterOptions& options);
+  ~Rasteriser();
+
+  /// The picture of one pass. `bounds` on the geometry term: one for each light, or none. Ends
+  /// early, with the lights that were done by then, once `stop` is set; calls `pixels_done` with
+  /// numbers that sum up to the pixels of the picture.
+  Image draw(const Camera& camera, const VirtualLights& lights, std::span<const float> bounds,
+             std::size_t pass, const StopFlag& stop,
+             const std::function<void(std::size_t)>& pixels_done = {});
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lantern

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Which of up to 32 lights each pixel sees, as the bits of a mask, by shadow volumes in the stencil
+// buffer. [Crow 1977; Heidmann 1991; from behind: Everitt & Kilgard 2002]
+#pragma once
+
+#include "lantern/gl/objects.h"
+#include "lantern/gl/program.h"
+#include "lantern/raster/edge_list.h"
+#include "lantern/raster/surfaces.h"
+#include "lantern/raster/view.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace lantern {
+
+enum class VolumeMethod {
+  kFromEye,     // z-pass with depth clamp, counting on from the count of the eye: exact
+  kFromBehind,  // z-fail with caps: exact too, without depth clamp, and slower
+};
+
+class StencilShadows {
+ public:
+  StencilShadows(const World& world, const gl::ShaderFiles& files, VolumeMethod method);
+
+  /// Bit i of `mask` (RGBA8, the lowest byte in red): whether lights[i], of 32 at most, is seen.
+  /// `framebuffer` draws into it with the depth and stencil of a G-buffer that was drawn with the
+  /// same view; the stencil must be 0, and is left so.
+  void draw(std::span<const LightPoint> lights, const View& view,
+            const gl::Framebuffer& framebuffer);
+
+ private:
+  struct Prepared {
+    LightPoint light{0.0f};
+    ShadowVolumes volumes;
+    const EdgeList* list = nullptr;
+  };
+
+  void choose_walls(const Vec3& eye);
+  Prepared prepare(const LightPoint& light, const Vec3& eye) const;
+  void take(std::size_t light, int reference, const View& view) const;
+
+  const World& world_;
+  VolumeMethod method_;
+  gl::Program volume_, take_;
+  gl::VertexArray no_vertices_;
+  std::vector<Vec4> all_walls_, walls_;
+  EdgeList whole_;                  // of all triangles
+  std::optional<EdgeList> inside_;  // of those that matter between points inside the walls
+  gl::Buffer vertices_, indices_;
+  gl::VertexArray array_;
+};
+
+}  // namespace lantern

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "lantern/raster/surfaces.h"
+
+#include "lantern/gl/check.h"
+#include "lantern/raster/draw_state.h"
+#include "lantern/trace/tracer.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <span>
+
+namespace lantern {
+namespace {
+
+constexpr GLuint kPosition = 0, kGeometricNormal = 1, kNormal = 2, kTexcoord = 3, kColour = 4;
+
+gl::Texture upload(const Texture& texture) {
+  const bool bytes = texture.linear.empty();
+  gl::Texture uploaded(bytes ? gl::Format::kRgba8 : gl::Format::kRgba32f, texture.width,
+                       texture.height);
+  if (bytes) {
+    uploaded.write<std::uint8_t>(texture.srgb8);
+  } else {
+    uploaded.write<float>(texture.linear);
+  }
+  return uploaded;
+}
+
+/// One of the world's arrays, a value for each corner of the triangles in this order.
+template <typename T>
+gl::Buffer by_corner(const World& world, std::span<const std::uint32_t> order,
+                     const std::vector<T>& values) {
+  std::vector<T> corners;
+  corners.reserve(3 * order.size());
+  for (const std::uint32_t t : order) {
+    for (int corner = 0; corner < 3; ++corner) {
+      corners.push_back(values[world.triangles[t][corner]]);
+    }
+  }
+  return gl::Buffer(std::span<const T>(corners));
+}
+
+gl::Buffer geometric_normals(const World& world, std::span<const std::uint32_t> order) {
+  std::vector<Vec3> normals;
+  normals.reserve(3 * order.size());
+  for (const std::uint32_t t : order) {
+    normals.insert(normals.end(), 3, glm::normalize(world.area_vector(t)));
+  }
+  return gl::Buffer(std::span<const Vec3>(normals));
+}
+
+}  // namespace
+
+GBuffer::GBuffer(int width, int height)
+    : points(gl::Format::kRgba32ui, width, height),
+      reflectances(gl::Format::kRgba32ui, width, height),
+      emissions(gl::Format::kRgba32f, width, height),
+      depth(gl::Format::kDepth32fStencil8, width, height),
+      framebuffer({&points, &reflectances, &emissions}, &depth) {}
+
+Surfaces::Surfaces(const Scene& scene, const World& world, const gl::ShaderFiles& files)
+    : scene_(scene),
+      lift_(glm::length(off_surface(Vec3(0.0f), Vec3(1.0f, 0.0f, 0.0f), world.coordinate_scale()))),
+      surface_(files, "shaders/surface.vert.glsl", "shaders/surface.frag.glsl"),
+      sky_(files, "shaders/full_screen.vert.glsl", "shaders/sky.frag.glsl"),
+      no_texture_(gl::Format::kRgba8, 1, 1) {
+  const auto use = [&](const std::optional<TextureId>& id) {
+    if (id && !textures_.contains(*id)) textures_.emplace(*id, upload(scene.textures[index(*id)]));
+  };
+  if (scene.sky) use(scene.sky->texture);
+
+  std::vector<std::uint32_t> order(world.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return world.materials[a] < world.materials[b];
+  });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::size_t material = index(world.materials[order[i]]);
+    if (batches_.empty() || batches_.back().material != material) {
+      batches_.push_back({material, static_cast<GLint>(3 * i), 0});
+      use(scene.materials[material].reflectance_texture);
+      use(scene.materials[material].emission_texture);
+    }
+    batches_.back().count += 3;
+  }
+
+  buffers_.reserve(5);
+  buffers_.push_back(by_corner(world, order, world.positions));
+  buffers_.push_back(geometric_normals(world, order));
+  vertices_.emplace(
+      std::initializer_list<gl::Attribute>{{.location = kPosition, .buffer = &buffers_[0]},
+                                           {.location = kGeometricNormal, .buffer = &buffers_[1]}});
+  const auto add = [&](const auto& values, GLuint location, int channels) {
+    if (values.empty()) return;
+    buffers_.push_back(by_corner(world, order, values));
+    vertices_->add({.location = location, .buffer = &buffers_.back(), .channels = channels});
+  };
+  add(world.normals, kNormal, 3);
+  add(world.texcoords, kTexcoord, 2);
+  add(world.colours, kColour, 4);
+}
+
+void Surfaces::set_look_up(const gl::Program& program, const char* sampler, const char* how,
+                           int unit, const std::optional<TextureId>& id) const {
+  if (!id) {
+    program.set(sampler, unit, no_texture_);
+    program.set(how, Vec4(0.0f));
+    return;
+  }
+  const Texture& texture = scene_.textures[index(*id)];
+  const auto wrap = [](Wrap mode) {
+    switch (mode) {
+      case Wrap::kClamp:
+        return 1.0f;
+      case Wrap::kMirror:
+        return 2.0f;
+      case Wrap::kRepeat:
+        break;
+    }
+    return 0.0f;
+  };
+  program.set(sampler, unit, textures_.at(*id));
+  program.set(how, Vec4(wrap(texture.wrap_u), wrap(texture.wrap_v),
+                        texture.linear.empty() ? 1.0f : 0.0f, 1.0f));
+}
+
+void Surfaces::draw(const View& view, const GBuffer& target) const {
+  target.framebuffer.bind();
+  apply({.depth = DepthUse::kDraw}, view);
+  glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(view), 0);
+
+  apply({}, view);
+  sky_.set("u_corner", view.corner);
+  sky_.set("u_step_x", view.step_x);
+  sky_.set("u_step_y", view.step_y);
+  sky_.set("u_radiance", scene_.sky ? scene_.sky->radiance : Rgb(0.0f));
+  set_look_up(sky_, "u_sky", "u_look_up", 0,
+              scene_.sky ? scene_.sky->texture : std::optional<TextureId>());
+  gl::draw_full_screen(no_vertices_);
+
+  apply({.depth = DepthUse::kDraw}, view);
+  surface_.set("u_eye", view.eye);
+  surface_.set("u_clip", view.clip);
+  surface_.set("u_lift", lift_);
+  vertices_->bind();
+  // What the vertices do not have: no normal of their own, white.
+  glVertexAttrib3f(kNormal, 0.0f, 0.0f, 0.0f);
+  glVertexAttrib4f(kColour, 1.0f, 1.0f, 1.0f, 1.0f);
+  for (const Batch& batch : batches_) {
+    const Material& material = scene_.materials[batch.material];
+    surface_.set("u_reflectance", material.reflectance);
+    surface_.set("u_emission", material.emission);
+    surface_.set("u_double_sided", material.double_sided ? 1 : 0);
+    surface_.set("u_vertex_colours", material.vertex_colours ? 1 : 0);
+    set_look_up(surface_, "u_reflectance_texture", "u_reflectance_look_up", 0,
+                material.reflectance_texture);
+    set_look_up(surface_, "u_emission_texture", "u_emission_look_up", 1, material.emission_texture);
+    glDrawArrays(GL_TRIANGLES, batch.first, batch.count);
+  }
+  reset_draw_state();
+  gl::check("drawing the surfaces");
+}
+
+}  // namespace lantern

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// What each pixel sees, drawn once: the surfaces of a scene into a G-buffer.
+#pragma once
+
+#include "lantern/gl/objects.h"
+#include "lantern/gl/program.h"
+#include "lantern/raster/view.h"
+#include "lantern/scene/scene.h"
+#include "lantern/scene/world.h"
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace lantern {
+
+/// See shaders/surface.frag.glsl. Depth and stencil are of the same texture.
+struct GBuffer {
+  gl::Texture points, reflectances, emissions, depth;
+  gl::Framebuffer framebuffer;
+
+  GBuffer(int width, int height);
+  GBuffer(const GBuffer&) = delete;
+  GBuffer& operator=(const GBuffer&) = delete;
+};
+
+class Surfaces {
+ public:
+  /// Keeps a reference to `scene`.
+  Surfaces(const Scene& scene, const World& world, const gl::ShaderFiles& files);
+
+  /// All of it, with the sky behind; the stencil becomes 0.
+  void draw(const View& view, const GBuffer& target) const;
+
+ private:
+  struct Batch {
+    std::size_t material;
+    GLint first;
+    GLsizei count;
+  };
+  /// A texture on a unit and how it is looked up.
+  void set_look_up(const gl::Program& program, const char* sampler, const char* how, int unit,
+                   const std::optional<TextureId>& texture) const;
+
+  const Scene& scene_;
+  float lift_;
+  gl::Program surface_, sky_;
+  std::map<TextureId, gl::Texture> textures_;
+  gl::Texture no_texture_;
+  std::vector<gl::Buffer> buffers_;
+  std::vector<Batch> batches_;
+  std::optional<gl::VertexArray> vertices_;
+  gl::VertexArray no_vertices_;
+};
+
+}  // namespace lantern

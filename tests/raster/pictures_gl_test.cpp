@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+// Whole pictures by GL against those by shadow rays: the same lights, materials and samples.
+#include "lantern/core/error.h"
+#include "lantern/core/hash.h"
+#include "lantern/gl/context.h"
+#include "lantern/image/compare.h"
+#include "lantern/pipeline/render.h"
+#include "lantern/raster/rasteriser.h"
+
+#include "tests/raster/raster_scenes.h"
+#include "tests/support/temporary_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lantern {
+namespace {
+
+using ::testing::HasSubstr;
+
+RenderOptions small(std::size_t paths) {
+  RenderOptions options;
+  options.width = 96;
+  options.height = 96;
+  options.lights.paths = paths;
+  options.bound = 20.0f;
+  return options;
+}
+
+Image picture(const Scene& scene, RenderOptions options, Backend backend) {
+  options.backend = backend;
+  const StopFlag never{false};
+  return render(scene, options, never).image;
+}
+
+/// Mean of |a - b| over that of b.
+double mean_difference(const Image& a, const Image& b) {
+  double difference = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    const glm::dvec3 p(a.pixels[i]), q(b.pixels[i]);
+    difference += std::abs(p.r - q.r) + std::abs(p.g - q.g) + std::abs(p.b - q.b);
+    all += q.r + q.g + q.b;
+  }
+  return difference / all;
+}
+
+/// Share of the pixels that differ by more than rounding.
+double differing(const Image& a, const Image& b) {
+  constexpr float kRounding = 1e-3f;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    const Rgb off = glm::abs(a.pixels[i] - b.pixels[i]);
+    count += max_component(off) > kRounding * max_component(b.pixels[i]) ? 1 : 0;
+  }
+  return static_cast<double>(count) / static_cast<double>(a.pixels.size());
+}
+
+/// Corners on a grid of 1/256 of a pixel and normals of 16 bits a coordinate.
+constexpr double kRasterRounding = 0.001;
+
+void expect_same(const Scene& scene, const RenderOptions& options) {
+  const Image cpu = picture(scene, options, Backend::kCpu);
+  const Image gl = picture(scene, options, Backend::kGl);
+  EXPECT_LT(mean_difference(gl, cpu), kRasterRounding);
+  // A pixel on an edge of a surface sees the other one.
+  EXPECT_LT(differing(gl, cpu), 0.01);
+  EXPECT_GT(max_component(Rgb(compare(cpu, gl).mean_b)), 0.0f);
+}
+
+TEST(Pictures, CornellBox) {
+  RenderOptions options = small(64);
+  options.samples = 2;
+  expect_same(test::own_scene("cornell_box.scene"), options);
+}
+
+TEST(Pictures, PassesAreTheSameToo) {
+  RenderOptions options = small(16);
+  options.passes = 3;
+  options.lights.pool = 4;
+  expect_same(test::own_scene("cornell_box.scene"), options);
+}
+
+TEST(Pictures, TwoRooms) { expect_same(test::own_scene("two_rooms.scene"), small(64)); }
+
+TEST(Pictures, ManyEmitters) { expect_same(test::own_scene("many_emitters.scene"), small(64)); }
+
+TEST(Pictures, Balls) { expect_same(test::room_of_balls(12, 12), small(24)); }
+
+TEST(Pictures, SibenikUnderSunAndSky) {
+  const auto folder = test::shared_folder("scenes/ogre");
+  if (!folder) GTEST_SKIP() << "the shared folder scenes/ogre is not there";
+  Scene scene = load_scene(*folder / "sibenik.mesh").scene;
+  for (Material& material : scene.materials) material.blend = false;  // its windows
+  scene.sky = Sky{};
+  PunctualLight sun;
+  sun.kind = PunctualKind::kDirectional;
+  sun.intensity = Rgb(20.0f);
+  sun.direction = glm::normalize(Vec3(0.3f, -1.0f, 0.2f));
+  scene.lights.push_back(sun);
+  expect_same(scene, small(24));
+}
+
+Texture noise_texture(int width, int height, bool bytes) {
+  Texture texture;
+  texture.width = width;
+  texture.height = height;
+  const auto channels = static_cast<std::size_t>(4 * width * height);
+  for (std::size_t i = 0; i < channels; ++i) {
+    const auto value = static_cast<std::uint8_t>(hash(i));
+    if (bytes) {
+      texture.srgb8.push_back(i % 4 == 3 ? std::uint8_t{255} : value);
+    } else {
+      texture.linear.push_back(i % 4 == 3 ? 1.0f : static_cast<float>(value) / 255.0f);
+    }
+  }
+  return texture;
+}
+
+/// Everything that materials and lights can have at once.
+Scene exhibition() {
+  Scene scene = test::room_of_balls(8, 8);
+  scene.instances.resize(12);
+  for (const bool bytes : {true, false}) scene.textures.push_back(noise_texture(7, 5, bytes));
+  scene.textures[0].wrap_u = Wrap::kMirror;
+  scene.textures[1].wrap_v = Wrap::kClamp;
+  scene.textures.push_back(noise_texture(16, 8, false));
+  Material& walls = scene.materials[0];
+  walls.reflectance_texture = to_id<TextureId>(0);
+  walls.vertex_colours = true;
+  Mesh& room = scene.meshes[0];
+  for (std::size_t i = 0; i < room.positions.size(); ++i) {
+    room.texcoords.push_back(Vec2(room.positions[i]) * 0.9f - Vec2(1.3f, room.positions[i].z));
+    const float shade = 0.5f + 0.05f * static_cast<float>(i);
+    room.colours.emplace_back(shade, 1.0f, 1.5f - shade, 1.0f);
+  }
+  room.triangles.resize(room.triangles.size() - 2);  // for the sky to shine in
+  Material& lamp = scene.materials[2];
+  lamp.emission_texture = to_id<TextureId>(1);
+  lamp.emission = Rgb(2.0f);  // or a single pixel on its edge shows in the mean
+  lamp.double_sided = true;
+  scene.meshes[1].texcoords = {{-0.5f, -0.5f}, {2.5f, -0.5f}, {2.5f, 2.5f}, {-0.5f, 2.5f}};
+  scene.instances[3].transform = glm::scale(scene.instances[3].transform, Vec3(-1.0f, 1.5f, 1.0f));
+
+  Sky sky;
+  sky.radiance = Rgb(0.5f, 0.6f, 0.8f);
+  sky.texture = to_id<TextureId>(2);
+  scene.sky = sky;
+  PunctualLight point, spot, sun;
+  point.position = Vec3(3.1f, 2.0f, 3.0f);
+  point.intensity = Rgb(2.0f, 1.0f, 0.5f);
+  spot.kind = PunctualKind::kSpot;
+  spot.position = Vec3(3.5f, 3.5f, 3.5f);
+  spot.direction = glm::normalize(Vec3(-0.8f, -1.0f, -0.9f));
+  spot.intensity = Rgb(3.0f, 5.0f, 3.0f);
+  spot.inner_angle = 0.3f;
+  spot.outer_angle = 0.6f;
+  sun.kind = PunctualKind::kDirectional;
+  sun.direction = glm::normalize(Vec3(0.2f, -1.0f, -0.3f));
+  sun.intensity = Rgb(3.0f, 2.9f, 2.5f);
+  scene.lights = {point, spot, sun};
+  scene.cameras[0].eye = Vec3(0.3f, 0.3f, 3.9f);
+  scene.cameras[0].forward = glm::normalize(Vec3(0.5f, 0.45f, -0.8f));
+  return scene;
+}
+
+TEST(Pictures, TexturesColoursSmoothNormalsAndEveryKindOfLight) {
+  expect_same(exhibition(), small(96));
+}
+
+TEST(Pictures, ThousandsOfLightsLoseNothing) {
+  RenderOptions options = small(1000);
+  options.width = options.height = 32;
+  const Scene scene = test::own_scene("cornell_box.scene");
+  const Image cpu = picture(scene, options, Backend::kCpu);
+  const Image gl = picture(scene, options, Backend::kGl);
+  // Away from edges; a 16-bit sum would be 3 % off at 256 lights already.
+  std::vector<double> off;
+  for (std::size_t i = 0; i < cpu.pixels.size(); ++i) {
+    if (is_black(cpu.pixels[i])) continue;
+    off.push_back(std::abs(luminance(gl.pixels[i]) / luminance(cpu.pixels[i]) - 1.0));
+  }
+  std::sort(off.begin(), off.end());
+  EXPECT_GT(off.size(), cpu.pixels.size() / 2);
+  EXPECT_LT(off[off.size() / 2], 1e-5);
+  EXPECT_LT(off[off.size() * 9 / 10], 1e-4);
+  const Comparison comparison = compare(gl, cpu);
+  for (int channel = 0; channel < 3; ++channel) {
+    EXPECT_NEAR(comparison.mean_a[channel] / comparison.mean_b[channel], 1.0, 1e-4);
+  }
+}
+
+/// The lights of neighbours are not quite those of the pixel: at edges of shadows, and where
+/// surfaces are narrower than a tile, as balls of twenty pixels are at their rims.
+TEST(Pictures, InterleavedComesClose) {
+  struct Case {
+    Scene scene;
+    int tile;
+    double mean;
+  };
+  const std::vector<Case> cases = {{test::own_scene("cornell_box.scene"), 2, 0.01},
+                                   {test::own_scene("cornell_box.scene"), 4, 0.02},
+                                   {test::own_scene("cornell_box.scene"), 8, 0.04},
+                                   {test::room_of_balls(12, 12), 4, 0.05}};
+  for (const Case& tested : cases) {
+    RenderOptions options = small(140);  // about 256 lights
+    options.width = 250;                 // no multiple of any tile
+    options.height = 190;
+    const Image all = picture(tested.scene, options, Backend::kGl);
+    options.tile = tested.tile;
+    const Image shared = picture(tested.scene, options, Backend::kGl);
+    EXPECT_LT(mean_difference(shared, all), tested.mean) << tested.tile;
+    const Comparison comparison = compare(shared, all);
+    EXPECT_NEAR(comparison.mean_a.g / comparison.mean_b.g, 1.0, 0.01);
+  }
+}
+
+TEST(Pictures, InterleavedSamplesTakeTurns) {
+  // Over sixteen samples every pixel of a tile meets every light.
+  const Scene scene = test::own_scene("cornell_box.scene");
+  RenderOptions options = small(32);
+  options.samples = 16;
+  const Image all = picture(scene, options, Backend::kGl);
+  options.tile = 4;
+  const Image turned = picture(scene, options, Backend::kGl);
+  options.samples = 1;
+  const Image once = picture(scene, options, Backend::kGl);
+  EXPECT_LT(mean_difference(turned, all), 0.5 * mean_difference(once, all));
+}
+
+TEST(Pictures, HolesAreRefusedByName) {
+  Scene scene = test::own_scene("cornell_box.scene");
+  scene.materials[0].name = "leaf";
+  scene.materials[0].alpha_cutoff = 0.5f;
+  try {
+    picture(scene, small(4), Backend::kGl);
+    FAIL() << "a picture came out";
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("leaf"));
+  }
+}
+
+TEST(Pictures, AnUnknownDeviceIsAnError) {
+  RenderOptions options = small(4);
+  options.gl_device = 1000;
+  EXPECT_THROW(picture(test::own_scene("cornell_box.scene"), options, Backend::kGl), Error);
+}
+
+TEST(Pictures, ItEndsWhenToldTo) {
+  RenderOptions options = small(4);
+  options.backend = Backend::kGl;
+  options.passes = 0;
+  const StopFlag now{true};
+  const Rendered rendered = render(test::own_scene("cornell_box.scene"), options, now);
+  EXPECT_EQ(rendered.statistics.passes, 1u);
+}
+
+}  // namespace
+}  // namespace lantern

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+// Shadow volumes against shadow rays, light by light and pixel by pixel, from the very points that
+// GL drew.
+#include "lantern/core/hash.h"
+#include "lantern/gl/context.h"
+#include "lantern/raster/raster_lights.h"
+#include "lantern/raster/rasteriser.h"
+#include "lantern/raster/stencil_shadows.h"
+#include "lantern/raster/surfaces.h"
+
+#include "tests/gl/apis.h"
+#include "tests/raster/raster_scenes.h"
+#include "tests/support/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace lantern {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 96;
+
+/// What shadow rays say of what masks say.
+struct Difference {
+  std::size_t pixels = 0;    // of all lights
+  std::size_t compared = 0;  // could be lit at all
+  std::size_t lit = 0;
+  std::size_t wrong = 0;
+  double share() const { return static_cast<double>(wrong) / static_cast<double>(pixels); }
+};
+
+struct Both {
+  const test::RasterStage& stage;
+  gl::ShaderFiles files;
+  Surfaces surfaces;
+  StencilShadows shadows;
+  GBuffer g_buffer{kWidth, kHeight};
+  gl::Texture mask{gl::Format::kRgba8, kWidth, kHeight};
+  gl::Framebuffer framebuffer = gl::Framebuffer({&mask}, &g_buffer.depth);
+  ClipRange range;
+
+  Both(const test::RasterStage& with, VolumeMethod method, ClipRange depths)
+      : stage(with),
+        surfaces(with.scene, with.world, files),
+        shadows(with.world, files, method),
+        range(depths) {}
+
+  Difference compare(const Camera& camera, const VirtualLights& lights) {
+    const View view = make_view(camera, {.width = kWidth,
+                                         .height = kHeight,
+                                         .offset = Vec2(0.3f, 0.6f),
+                                         .radius = stage.world.bounds.radius(),
+                                         .range = range});
+    surfaces.draw(view, g_buffer);
+    g_buffer.framebuffer.bind();
+    const auto points = g_buffer.framebuffer.read<std::uint32_t>(0);
+    const auto reflectances = g_buffer.framebuffer.read<std::uint32_t>(1);
+    const auto emissions = g_buffer.framebuffer.read<float>(2);
+    Difference difference;
+    for (const LightGroup& group : group_lights(lights, {}, stage.world.coordinate_scale())) {
+      shadows.draw(group.points, view, framebuffer);
+      const auto masks = framebuffer.read<std::uint8_t>();
+      for (std::size_t pixel = 0; pixel < masks.size() / 4; ++pixel) {
+        difference.pixels += group.points.size();
+        if (emissions[4 * pixel + 3] == 0.0f) continue;
+        const auto word = [&](std::size_t i) {
+          return std::bit_cast<float>(points[4 * pixel + i]);
+        };
+        const Vec3 position(word(0), word(1), word(2));
+        const Vec3 normal = unpack(reflectances[4 * pixel + 3]);
+        for (std::size_t light = 0; light < group.points.size(); ++light) {
+          compare_one(group, light, position, normal,
+                      (masks[4 * pixel + light / 8] >> (light % 8) & 1) != 0, difference);
+        }
+      }
+    }
+    return difference;
+  }
+
+  void compare_one(const LightGroup& group, std::size_t light, const Vec3& position,
+                   const Vec3& normal, bool seen, Difference& difference) const {
+    const LightPoint& point = group.points[light];
+    const Vec3 way = Vec3(point) - point.w * position;
+    // Where surface or light look away from each other nobody asks, nor where they do but for the
+    // rounding of the packed normal.
+    constexpr float kGrazing = 1e-4f;
+    if (glm::dot(normal, way) < kGrazing * glm::length(way)) return;
+    if (group.formula == LightFormula::kSurface &&
+        -glm::dot(Vec3(group.records[light].axis), way) < kGrazing * glm::length(way)) {
+      return;
+    }
+    Ray ray;
+    ray.origin = position;
+    ray.direction = way;
+    ray.far = point.w != 0.0f ? 1.0f : kInfinity;
+    const bool lit = !stage.tracer->occluded(ray);
+    ++difference.compared;
+    difference.lit += lit ? 1 : 0;
+    difference.wrong += lit != seen ? 1 : 0;
+  }
+
+  /// The inverse of shaders/octahedral.glsl.
+  static Vec3 unpack(std::uint32_t bits) {
+    const Vec2 p = Vec2(static_cast<float>(bits & 0xffffu), static_cast<float>(bits >> 16)) *
+                       (2.0f / 65534.0f) -
+                   1.0f;
+    Vec3 n(p, 1.0f - std::abs(p.x) - std::abs(p.y));
+    if (n.z < 0.0f) {
+      n.x = (1.0f - std::abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f);
+      n.y = (1.0f - std::abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f);
+    }
+    return glm::normalize(n);
+  }
+};
+
+/// Rasterisers move corners to a grid of 1/256 of a pixel: along the edges of shadows and of
+/// surfaces, which cross a few hundred pixels, so small a share falls to the other side.
+constexpr double kEdges = 0.0005;
+
+/// Of a single view a light or two may run along an edge; an eye that is on the wrong side of a
+/// volume's quad would have half its pixels wrong.
+constexpr double kOneView = 0.005;
+
+void expect_same(const test::RasterStage& stage, VolumeMethod method, std::size_t paths,
+                 const std::vector<Camera>& cameras, ClipRange range = ClipRange::kFarIs0) {
+  Both both(stage, method, range);
+  const VirtualLights lights = stage.lights(paths);
+  Difference all;
+  for (const Camera& camera : cameras) {
+    const Difference d = both.compare(camera, lights);
+    EXPECT_LT(d.share(), kOneView)
+        << "from " << camera.eye.x << ' ' << camera.eye.y << ' ' << camera.eye.z;
+    all.pixels += d.pixels;
+    all.compared += d.compared;
+    all.lit += d.lit;
+    all.wrong += d.wrong;
+  }
+  EXPECT_LT(all.share(), kEdges);
+  EXPECT_GT(all.lit, all.pixels / 20);
+  EXPECT_GT(all.compared, all.lit);
+}
+
+/// Eyes anywhere in the scene's box, many of them inside volumes.
+std::vector<Camera> random_cameras(const Bounds& box, int count) {
+  std::vector<Camera> cameras;
+  for (int i = 0; i < count; ++i) {
+    const auto number = [&](std::uint64_t n) {
+      return to_unit_float(hash(static_cast<std::uint64_t>(i), n));
+    };
+    Camera camera;
+    camera.eye = glm::mix(box.low, box.high, Vec3(number(0), number(1), number(2)));
+    const Vec3 target = glm::mix(box.low, box.high, Vec3(number(3), number(4), number(5)));
+    camera.forward = glm::normalize(target - camera.eye);
+    camera.vertical_fov = 0.4f + 1.5f * number(6);
+    cameras.push_back(camera);
+  }
+  return cameras;
+}
+
+class ShadowsTest : public ::testing::TestWithParam<gl::Api> {
+ protected:
+  gl::Context context_{{.api = GetParam(), .device = {}}};
+};
+INSTANTIATE_TEST_SUITE_P(Apis, ShadowsTest, ::testing::Values(gl::Api::kDesktop, gl::Api::kEs));
+
+TEST_P(ShadowsTest, CornellBox) {
+  const test::RasterStage stage(test::own_scene("cornell_box.scene"));
+  expect_same(stage, VolumeMethod::kFromEye, 40, stage.scene.cameras);
+}
+
+TEST_P(ShadowsTest, CornellBoxFromAnywhere) {
+  const test::RasterStage stage(test::own_scene("cornell_box.scene"));
+  expect_same(stage, VolumeMethod::kFromEye, 40, random_cameras(stage.world.bounds, 24));
+}
+
+TEST_P(ShadowsTest, TwoRooms) {
+  const test::RasterStage stage(test::own_scene("two_rooms.scene"));
+  expect_same(stage, VolumeMethod::kFromEye, 40, random_cameras(stage.world.bounds, 24));
+}
+
+TEST_P(ShadowsTest, Balls) {
+  const test::RasterStage stage(test::room_of_balls(16, 16));
+  std::vector<Camera> cameras = random_cameras(stage.world.bounds, 8);
+  cameras.push_back(stage.scene.cameras.front());
+  expect_same(stage, VolumeMethod::kFromEye, 20, cameras);
+}
+
+TEST_P(ShadowsTest, FromBehindTheSame) {
+  const test::RasterStage cornell(test::own_scene("cornell_box.scene"));
+  expect_same(cornell, VolumeMethod::kFromBehind, 20, random_cameras(cornell.world.bounds, 6));
+  const test::RasterStage balls(test::room_of_balls(8, 8));
+  expect_same(balls, VolumeMethod::kFromBehind, 10, random_cameras(balls.world.bounds, 6));
+}
+
+TEST_P(ShadowsTest, WithoutClipControl) {
+  const test::RasterStage stage(test::own_scene("cornell_box.scene"));
+  const std::vector<Camera> cameras = random_cameras(stage.world.bounds, 6);
+  expect_same(stage, VolumeMethod::kFromEye, 20, cameras, ClipRange::kFarIs1);
+  expect_same(stage, VolumeMethod::kFromBehind, 20, cameras, ClipRange::kFarIs1);
+}
+
+TEST_P(ShadowsTest, Sibenik) {
+  const auto folder = test::shared_folder("scenes/ogre");
+  if (!folder) GTEST_SKIP() << "the shared folder scenes/ogre is not there";
+  Scene scene = load_scene(*folder / "sibenik.mesh").scene;
+  Bounds all;
+  for (const Vec3& p : make_world(scene).positions) all.add(p);
+  PunctualLight lamp;
+  lamp.position = all.centre();
+  scene.lights.push_back(lamp);
+  const test::RasterStage stage(std::move(scene));
+  Bounds box = stage.world.bounds;
+  expect_same(stage, VolumeMethod::kFromEye, 10, random_cameras(box, 4));
+}
+
+}  // namespace
+}  // namespace lantern
