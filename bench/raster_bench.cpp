@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a light costs by OpenGL, in CPU time of the whole process (Mesa draws on the CPU) over that
-// of one unshadowed, blended full-screen pass. The stages of a frame are left out one after the
-// other; each number is the slope over the number of lights.
-//   raster_bench SCENE [--size WxH is 640x480] [--lights N]
+// What a light costs by OpenGL at 640x480, in CPU time of the whole process (Mesa draws on the CPU)
+// and over that of one unshadowed, blended full-screen pass: the best of five runs of each stage.
+//   raster_bench SCENE [--lights PATHS]
 #include "lantern/gl/context.h"
 #include "lantern/lights/emitters.h"
 #include "lantern/lights/walk.h"
