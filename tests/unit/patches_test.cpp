@@ -151,7 +151,7 @@ TEST(PatchMesh, TheHighestScoresAreRefinedAndTheCountIsKept) {
   std::vector<double> scores(mesh.size());
   for (std::size_t f = 0; f < mesh.size(); ++f) scores[f] = mesh.corner(f, 0).x > 0.45 ? 1.0 : 0.0;
   const std::size_t before = mesh.size();
-  refine_highest(mesh, scores, 300);
+  refine_highest(mesh, scores, 0.5, 300);
   EXPECT_GT(mesh.size(), before);
   EXPECT_LE(mesh.size(), 300u);
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <numeric>
 #include <unordered_map>
 #include <utility>
@@ -115,20 +116,20 @@ std::vector<std::size_t> by_descending(std::span<const double> values) {
   return order;
 }
 
-/// Bisects the first `wanted` faces of `order`, fewer where that makes more than `count`. False if
-/// not even one can be.
-bool bisect_within(PatchMesh& mesh, std::span<const std::size_t> order, std::size_t wanted,
-                   std::size_t count) {
+/// Bisects the first `wanted` faces of `order`, fewer where that makes more than `count`. Returns
+/// what bisect() does; nothing if not even one can be.
+std::vector<std::uint32_t> bisect_within(PatchMesh& mesh, std::span<const std::size_t> order,
+                                         std::size_t wanted, std::size_t count) {
   for (wanted = std::min(wanted, count - mesh.size()); wanted > 0; wanted /= 2) {
     std::vector<bool> marked(mesh.size(), false);
     for (const std::size_t face : order.subspan(0, wanted)) marked[face] = true;
     PatchMesh finer = mesh;
-    bisect(finer, marked);
+    std::vector<std::uint32_t> parents = bisect(finer, marked);
     if (finer.size() > count) continue;
     mesh = std::move(finer);
-    return true;
+    return parents;
   }
-  return false;
+  return {};
 }
 
 }  // namespace
@@ -169,7 +170,7 @@ PatchMesh make_patch_mesh(const World& world) {
   return mesh;
 }
 
-void bisect(PatchMesh& mesh, const std::vector<bool>& marked) {
+std::vector<std::uint32_t> bisect(PatchMesh& mesh, const std::vector<bool>& marked) {
   assert(marked.size() == mesh.size());
   const Edges edges(mesh);
   std::vector<std::uint32_t> middle(edges.size(), kNone);
@@ -193,12 +194,15 @@ void bisect(PatchMesh& mesh, const std::vector<bool>& marked) {
     mesh.positions.push_back(0.5 * (mesh.positions[key >> 32] + mesh.positions[key & kNone]));
   }
   std::vector<PatchMesh::Face> faces;
+  std::vector<std::uint32_t> parents;
   faces.reserve(mesh.size() * 2);
-  for (std::size_t f = 0; f < mesh.size(); ++f) {
+  parents.reserve(mesh.size() * 2);
+  for (std::uint32_t f = 0; f < mesh.size(); ++f) {
     const int longest = edges.longest(f);
     const auto middle_of = [&](int side) { return middle[edges.of(f, (longest + side) % 3)]; };
     if (middle_of(0) == kNone) {
       faces.push_back(mesh.faces[f]);
+      parents.push_back(f);
       continue;
     }
     const auto [first, second] = halves(rotated(mesh.faces[f], longest), middle_of(0));
@@ -213,8 +217,10 @@ void bisect(PatchMesh& mesh, const std::vector<bool>& marked) {
       faces.push_back(a);
       faces.push_back(b);
     }
+    parents.resize(faces.size(), f);
   }
   mesh.faces = std::move(faces);
+  return parents;
 }
 
 void refine_to_size(PatchMesh& mesh, double size, std::size_t most) {
@@ -246,17 +252,33 @@ void refine_to_count(PatchMesh& mesh, std::size_t count) {
     const auto wanted = static_cast<std::size_t>(
         std::find_if(order.begin(), order.end(), [&](std::size_t f) { return edges[f] < least; }) -
         order.begin());
-    if (!bisect_within(mesh, order, wanted, count)) return;
+    if (bisect_within(mesh, order, wanted, count).empty()) return;
   }
 }
 
-void refine_highest(PatchMesh& mesh, std::span<const double> scores, std::size_t count) {
+void refine_highest(PatchMesh& mesh, std::span<const double> scores, double decay,
+                    std::size_t count) {
   assert(scores.size() == mesh.size());
-  if (mesh.size() >= count) return;
-  const std::vector<std::size_t> order = by_descending(scores);
-  const auto positive = static_cast<std::size_t>(
-      std::count_if(scores.begin(), scores.end(), [](double s) { return s > 0.0; }));
-  bisect_within(mesh, order, positive, count);
+  // So few at a time that the halves of the first come before the last.
+  constexpr std::size_t kTogether = 16;
+  std::vector<double> current(scores.begin(), scores.end());
+  while (mesh.size() > 0 && mesh.size() < count) {
+    const std::vector<std::size_t> order = by_descending(current);
+    const std::size_t before = mesh.size();
+    const std::vector<std::uint32_t> parents =
+        bisect_within(mesh, order, std::max<std::size_t>(1, before / kTogether), count);
+    if (parents.empty()) return;
+    std::vector<std::uint32_t> parts(before, 0);
+    for (const std::uint32_t parent : parents) ++parts[parent];
+    std::vector<double> next;
+    next.reserve(parents.size());
+    for (const std::uint32_t parent : parents) {
+      // A face is in one, two, three or four parts: halved no, once or twice.
+      const int halved = parts[parent] == 1 ? 0 : parts[parent] == 2 ? 1 : 2;
+      next.push_back(current[parent] * std::pow(decay, halved));
+    }
+    current = std::move(next);
+  }
 }
 
 }  // namespace lantern

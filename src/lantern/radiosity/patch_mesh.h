@@ -36,8 +36,9 @@ struct PatchMesh {
 /// One face for each triangle of the world.
 PatchMesh make_patch_mesh(const World& world);
 
-/// Bisects the marked faces, and as many others as the mesh needs to stay conforming.
-void bisect(PatchMesh& mesh, const std::vector<bool>& marked);
+/// Bisects the marked faces, and as many others as the mesh needs to stay conforming. Returns for
+/// each face the one that it was or is a part of.
+std::vector<std::uint32_t> bisect(PatchMesh& mesh, const std::vector<bool>& marked);
 
 /// Until no edge is longer than `size` (above zero, metres). Throws Error once there are more faces
 /// than `most`.
@@ -46,8 +47,9 @@ void refine_to_size(PatchMesh& mesh, double size, std::size_t most);
 /// Longest edges first, until one more bisection would make more than `count` faces.
 void refine_to_count(PatchMesh& mesh, std::size_t count);
 
-/// Bisects the faces of the highest scores (one for each face; none of zero), as many as keep the
-/// faces at or below `count`.
-void refine_highest(PatchMesh& mesh, std::span<const double> scores, std::size_t count);
+/// Bisects the faces of the highest scores (one for each face), and what they fall into, until one
+/// more would make more than `count` faces. `decay` is the score of a half over that of its whole.
+void refine_highest(PatchMesh& mesh, std::span<const double> scores, double decay,
+                    std::size_t count);
 
 }  // namespace lantern
