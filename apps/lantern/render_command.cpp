@@ -45,6 +45,7 @@ struct Arguments {
   bool single_rays = false;
   std::string variance;
   RadiosityOptions radiosity;
+  std::string solver = "gauss-seidel";
   bool no_ambient = false;
   bool json = false;
 };
@@ -117,6 +118,9 @@ void add_radiosity(const Arguments& arguments, RenderOptions& options) {
   options.radiosity = arguments.radiosity;
   options.radiosity.hemicube.seed = arguments.lights.seed;
   options.radiosity.ambient = !arguments.no_ambient;
+  options.radiosity.solver =
+      arguments.solver == "elimination" ? Solver::kElimination : Solver::kGaussSeidel;
+  if (!arguments.scene.quiet) options.notice = note;
 }
 
 RenderOptions render_options(const Arguments& arguments) {
@@ -128,6 +132,7 @@ RenderOptions render_options(const Arguments& arguments) {
     case Method::kPath:
       add_path(arguments, options);
       break;
+    case Method::kRadiosityMatrix:
     case Method::kRadiosityHemicube:
     case Method::kRadiosityProgressive:
     case Method::kRadiosityGpu:
@@ -160,8 +165,13 @@ bool shoots(Method method) {
 void add_radiosity(const RenderOptions& options, const RenderStatistics& statistics,
                    Metadata& metadata) {
   const RadiosityOptions& radiosity = options.radiosity;
-  metadata.insert({{"patches", std::to_string(statistics.radiosity.patches)},
-                   {"hemicube", std::to_string(radiosity.hemicube.resolution)}});
+  metadata["patches"] = std::to_string(statistics.radiosity.patches);
+  if (options.method == Method::kRadiosityMatrix) {
+    metadata["refine"] = std::to_string(statistics.radiosity.rounds);
+    metadata["solver"] = radiosity.solver == Solver::kElimination ? "elimination" : "gauss-seidel";
+    return;
+  }
+  metadata["hemicube"] = std::to_string(radiosity.hemicube.resolution);
   if (shoots(options.method)) {
     metadata.insert({{"cutoff", fmt::format("{}", radiosity.cutoff)},
                      {"shots", std::to_string(statistics.radiosity.shots)},
@@ -197,6 +207,7 @@ Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
       break;
     case Method::kPath:
       break;
+    case Method::kRadiosityMatrix:
     case Method::kRadiosityHemicube:
     case Method::kRadiosityProgressive:
     case Method::kRadiosityGpu:
@@ -207,8 +218,17 @@ Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
 }
 
 nlohmann::json radiosity_json(Method method, const RadiosityStatistics& s) {
-  nlohmann::json out = {
-      {"patches", s.patches}, {"elements", s.elements}, {"hemicubes", s.hemicubes}};
+  nlohmann::json out = {{"patches", s.patches}, {"elements", s.elements}};
+  if (method == Method::kRadiosityMatrix) {
+    out["rounds"] = s.rounds;
+    out["form_factor_rays"] = s.form_factors.rays;
+    out["open_pairs"] = s.form_factors.open_pairs;
+    out["screened_pairs"] = s.form_factors.screened_pairs;
+    out["bytes_expected"] = s.bytes_expected;
+    out["seconds_expected"] = s.seconds_expected;
+  } else {
+    out["hemicubes"] = s.hemicubes;
+  }
   if (shoots(method)) {
     out["shots"] = s.shots;
     out["unshot_share"] = s.unshot_share;
@@ -380,6 +400,14 @@ void add_render(CLI::App& app) {
       command->add_option("--patches", a.radiosity.patches.count, "Patches at most (radiosity)")
           ->check(CLI::Range(1, 16'000'000))
           ->capture_default_str();
+  command
+      ->add_option("--refine", a.radiosity.refinements,
+                   "Rounds that place patches where light varies (matrix)")
+      ->check(CLI::Range(0, 16))
+      ->capture_default_str();
+  command->add_option("--solver", a.solver, "gauss-seidel or elimination (matrix)")
+      ->check(CLI::IsMember({"gauss-seidel", "elimination"}))
+      ->capture_default_str();
   command->add_option("--patch-size", a.radiosity.patches.size, "Their longest edge in metres")
       ->check(finite(1e-9, 1e9))
       ->excludes(count);

@@ -29,6 +29,11 @@ std::string time_text(double seconds) {
 
 void warn(const std::string& text) { fmt::print(stderr, "warning: {}\n", text); }
 
+void note(const std::string& text) {
+  const bool over_bar = ::isatty(STDERR_FILENO) != 0;
+  fmt::print(stderr, "{}{}\n", over_bar ? "\r\033[K" : "", text);
+}
+
 ProgressBar::ProgressBar(bool quiet)
     : quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) != 0),

@@ -13,6 +13,9 @@ namespace lantern::app {
 /// One line that starts with "warning:".
 void warn(const std::string& text);
 
+/// One line that says what is going to happen.
+void note(const std::string& text);
+
 /// A bar with the time left on a terminal, a line now and then elsewhere.
 class ProgressBar {
  public:

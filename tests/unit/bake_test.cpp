@@ -38,7 +38,14 @@ struct Prepared {
       : scene(std::move(given)),
         world(make_world(scene)),
         tracer(make_embree_tracer(scene, world)),
-        patches(make_patches(scene, world, *tracer, PatchOptions{.count = count})) {}
+        patches(fronts(count)) {}
+  /// Of all fronts, whatever lights them: the tests give irradiances of their own.
+  Patches fronts(std::size_t count) const {
+    PatchMesh mesh = make_patch_mesh(world);
+    refine_to_count(mesh, count);
+    const std::vector<bool> all(world.size(), true), none(world.size(), false);
+    return make_patches(scene, world, *tracer, std::move(mesh), {.front = all, .back = none});
+  }
   Atlas atlas(int size) const { return make_atlas(world, patches, size); }
   Solution solution(const std::function<double(const glm::dvec3&)>& irradiance) const {
     std::vector<glm::dvec3> values;

@@ -8,11 +8,16 @@
 #include "lantern/radiosity/form_factors.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lantern {
 
 RadiosityStage::RadiosityStage(const RenderJob& job)
-    : patches(make_patches(job.scene, job.world, job.tracer, job.options.radiosity.patches)),
+    : RadiosityStage(
+          job, make_patches(job.scene, job.world, job.tracer, job.options.radiosity.patches)) {}
+
+RadiosityStage::RadiosityStage(const RenderJob& job, Patches made)
+    : patches(std::move(made)),
       external(external_irradiance(job.scene, job.world, job.tracer, patches)) {
   const auto is_lit = [](const glm::dvec3& value) { return value != glm::dvec3(0.0); };
   require_light(job.scene.sky || !job.scene.lights.empty() ||

@@ -18,6 +18,8 @@ struct RadiosityStage {
 
   /// Throws Error if the scene has no light, and as make_patches() does.
   explicit RadiosityStage(const RenderJob& job);
+  /// The same on patches made otherwise.
+  RadiosityStage(const RenderJob& job, Patches made);
 };
 
 /// Throws Error with the numbers if a matrix between so many elements does not fit in memory:

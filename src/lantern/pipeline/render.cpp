@@ -7,6 +7,7 @@
 #include "lantern/pipeline/render_path.h"
 #include "lantern/pipeline/render_radiosity_gpu.h"
 #include "lantern/pipeline/render_radiosity_hemicube.h"
+#include "lantern/pipeline/render_radiosity_matrix.h"
 #include "lantern/pipeline/render_radiosity_progressive.h"
 #include "lantern/trace/embree.h"
 
@@ -41,6 +42,8 @@ Rendered render(const Scene& scene, const RenderOptions& options, const StopFlag
       return render_instant_radiosity(job);
     case Method::kPath:
       return render_path(job);
+    case Method::kRadiosityMatrix:
+      return render_radiosity_matrix(job);
     case Method::kRadiosityHemicube:
       return render_radiosity_hemicube(job);
     case Method::kRadiosityProgressive:

@@ -12,6 +12,7 @@
 #include "lantern/radiosity/form_factors.h"
 #include "lantern/radiosity/hemicube_rows.h"
 #include "lantern/radiosity/patches.h"
+#include "lantern/radiosity/solve.h"
 #include "lantern/scene/scene.h"
 
 #include <cstddef>
@@ -26,6 +27,7 @@ namespace lantern {
 enum class Method {
   kInstantRadiosity,      // [Keller 1997]
   kPath,                  // [Kajiya 1986]
+  kRadiosityMatrix,       // [Goral et al. 1984]
   kRadiosityHemicube,     // [Cohen & Greenberg 1985]
   kRadiosityProgressive,  // [Cohen et al. 1988]
   kRadiosityGpu,          // [Coombe et al. 2004]
@@ -56,6 +58,8 @@ struct PathTracing {
 /// How surfaces are cut into patches and light is exchanged between these (radiosity).
 struct RadiosityOptions {
   PatchOptions patches;
+  int refinements = 2;                   // matrix: rounds that place patches where light varies
+  Solver solver = Solver::kGaussSeidel;  // matrix
   HemicubeOptions hemicube;
   double cutoff = 1e-3;  // progressive, gpu: the share of the flux emitted that may stay unshot
   bool ambient = true;   // progressive, gpu: what is unshot lights all surfaces alike
@@ -82,6 +86,9 @@ struct RenderOptions {
 
   PathTracing path;
   RadiosityOptions radiosity;
+
+  /// Told one line at a time, from any thread, what memory and time long work is going to take.
+  std::function<void(const std::string&)> notice;
 };
 
 struct RayCounts {
@@ -96,6 +103,10 @@ struct RadiosityStatistics {
   std::size_t patches = 0;
   std::size_t elements = 0;  // sides of patches that light can come to
   std::size_t hemicubes = 0;
+  std::size_t rounds = 0;            // of refinement
+  std::uint64_t bytes_expected = 0;  // of the last round's matrix, as told beforehand
+  double seconds_expected = 0.0;     // to assemble and solve it, likewise
+  FormFactorCounts form_factors;
   RowSums row_sums;
   double reciprocity_error = 0.0;
   int sweeps = 0;  // of Gauss-Seidel

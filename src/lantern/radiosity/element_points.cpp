@@ -43,7 +43,7 @@ ElementPoints::ElementPoints(const World& world, const Tracer& tracer, const Pat
       Random random(hash(e, k));
       Vec3 position = point(in_part(k, random));
       for (int i = 0; partly && i < kTries &&
-                      is_covered(world, patches.lit_back, tracer, position, normal, hash(e, k));
+                      is_covered(world, patches.lit, tracer, position, normal, hash(e, k));
            ++i) {
         position = point(random.in_triangle());
       }

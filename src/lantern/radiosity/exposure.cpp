@@ -71,13 +71,18 @@ class Search {
     }
   }
 
-  /// A walk from a point of the triangle's back.
-  bool finds_light(std::uint32_t triangle, std::uint64_t key) const {
+  /// Whether a side of a triangle emits.
+  bool emits(std::uint32_t triangle, bool front) const {
+    return !is_black(material(triangle).emission) && (front || material(triangle).double_sided);
+  }
+
+  /// A walk from a point of a side of the triangle.
+  bool finds_light(std::uint32_t triangle, bool from_front, std::uint64_t key) const {
     // Light that needs more reflections than these adds nothing that could be seen.
     constexpr int kLongest = 8;
     Random random(key);
     const Vec2 uv = random.in_triangle();
-    Vec3 normal = -glm::normalize(world_.area_vector(triangle));
+    Vec3 normal = glm::normalize(world_.area_vector(triangle)) * (from_front ? 1.0f : -1.0f);
     Vec3 position = point(triangle, uv);
     for (int step = 0; step < kLongest; ++step) {
       const Vec3 origin = off_surface(position, normal, scale_);
@@ -97,9 +102,6 @@ class Search {
  private:
   const Material& material(std::uint32_t triangle) const {
     return scene_.materials[index(world_.materials[triangle])];
-  }
-  bool emits(std::uint32_t triangle, bool front) const {
-    return !is_black(material(triangle).emission) && (front || material(triangle).double_sided);
   }
   Vec3 point(std::uint32_t triangle, Vec2 uv) const {
     const uvec3 v = world_.triangles[triangle];
@@ -138,45 +140,48 @@ class Search {
 
 }  // namespace
 
-std::vector<bool> lit_backs(const Scene& scene, const World& world, const PatchMesh& mesh,
-                            const Tracer& tracer) {
-  // Enough that a surface of which a hundredth sees light is found with a probability of 0.92.
-  constexpr std::uint64_t kLeastWalks = 256;
+LitSides lit_sides(const Scene& scene, const World& world, const PatchMesh& mesh,
+                   const Tracer& tracer) {
+  // A side of which a hundredth of the walks find light is missed once in ten. Backs are mostly
+  // those of solids, and there are many; fronts that no light comes to are few, and a miss shows.
+  constexpr std::uint64_t kLeastWalks[] = {256, 4096};  // of backs, of fronts
   constexpr std::uint64_t kWalksOfTriangle = 4;
   Groups groups = surfaces_of(mesh);
   std::vector<std::vector<std::uint32_t>> members(mesh.size());
   for (std::uint32_t f = 0; f < mesh.size(); ++f) members[groups.find(f)].push_back(f);
   const Search search(scene, world, tracer);
-  std::vector<std::uint8_t> lit(mesh.size(), 0);
-  parallel_for(mesh.size(), 1, [&](std::size_t group) {
-    const std::vector<std::uint32_t>& faces = members[group];
+  std::vector<std::uint8_t> lit(2 * mesh.size(), 0);
+  parallel_for(lit.size(), 1, [&](std::size_t side) {
+    const std::vector<std::uint32_t>& faces = members[side / 2];
     if (faces.empty()) return;
+    const bool front = side % 2 == 1;
     const std::uint64_t walks =
-        std::max<std::uint64_t>(kLeastWalks, kWalksOfTriangle * faces.size());
-    for (std::uint64_t walk = 0; walk < walks && lit[group] == 0; ++walk) {
+        std::max<std::uint64_t>(kLeastWalks[side % 2], kWalksOfTriangle * faces.size());
+    for (std::uint64_t walk = 0; walk < walks && lit[side] == 0; ++walk) {
       const std::uint32_t face = faces[walk % faces.size()];
-      const Material& material = scene.materials[index(world.materials[face])];
-      const bool shines = material.double_sided && !is_black(material.emission);
-      if (shines || search.finds_light(face, hash(group, walk))) lit[group] = 1;
+      lit[side] = search.emits(face, front) || search.finds_light(face, front, hash(side, walk));
     }
   });
-  std::vector<bool> result(mesh.size());
-  for (std::uint32_t f = 0; f < mesh.size(); ++f) result[f] = lit[groups.find(f)] != 0;
+  LitSides result;
+  for (std::uint32_t f = 0; f < mesh.size(); ++f) {
+    const std::size_t group = groups.find(f);
+    result.back.push_back(lit[2 * group] != 0);
+    result.front.push_back(lit[2 * group + 1] != 0);
+  }
   return result;
 }
 
-bool is_covered(const World& world, const std::vector<bool>& lit_back, const Tracer& tracer,
-                const Vec3& position, const Vec3& normal, std::uint64_t key) {
-  // From a point in the open no ray ends at such a back, save through a crack; from inside a solid
-  // every ray does, save those that meet another thing inside.
+bool is_covered(const World& world, const LitSides& lit, const Tracer& tracer, const Vec3& position,
+                const Vec3& normal, std::uint64_t key) {
+  // From a point in the open no ray ends at such a side, save through a crack; from inside a solid
+  // every ray does.
   constexpr int kRays = 8;
   const Vec3 origin = off_surface(position, normal, world.coordinate_scale());
   Random random(key);
   for (int i = 0; i < kRays; ++i) {
     const Vec3 direction = Frame(normal).to_world(random.cosine_direction());
     const Hit hit = tracer.closest({.origin = origin, .direction = direction});
-    if (!hit || glm::dot(world.area_vector(hit.triangle), direction) < 0.0f ||
-        lit_back[hit.triangle]) {
+    if (!hit || lit(hit.triangle, glm::dot(world.area_vector(hit.triangle), direction) < 0.0f)) {
       return false;
     }
   }

@@ -13,15 +13,24 @@
 
 namespace lantern {
 
-/// For each triangle of the world, whether light can come to its back. `mesh` is the world's own
-/// (see make_patch_mesh()). Decided for each surface as a whole, that is for what hangs together by
-/// edges: walks from its back over surfaces of any reflectance look for an emitter.
-std::vector<bool> lit_backs(const Scene& scene, const World& world, const PatchMesh& mesh,
-                            const Tracer& tracer);
+/// For each triangle of the world, whether light can come to its front and to its back.
+struct LitSides {
+  std::vector<bool> front, back;
 
-/// Whether a point just above a surface is shut in by backs that no light comes to, as the floor
+  bool operator()(std::uint32_t triangle, bool is_front) const {
+    return is_front ? front[triangle] : back[triangle];
+  }
+};
+
+/// Decided for each side of each surface as a whole, that is for what hangs together by edges:
+/// walks from it over surfaces of any reflectance look for an emitter. `mesh` is the world's own
+/// (see make_patch_mesh()).
+LitSides lit_sides(const Scene& scene, const World& world, const PatchMesh& mesh,
+                   const Tracer& tracer);
+
+/// Whether a point just above a surface is shut in by sides that no light comes to, as the floor
 /// under a box is. `key` chooses the rays.
-bool is_covered(const World& world, const std::vector<bool>& lit_back, const Tracer& tracer,
-                const Vec3& position, const Vec3& normal, std::uint64_t key);
+bool is_covered(const World& world, const LitSides& lit, const Tracer& tracer, const Vec3& position,
+                const Vec3& normal, std::uint64_t key);
 
 }  // namespace lantern

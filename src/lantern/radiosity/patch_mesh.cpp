@@ -108,6 +108,10 @@ std::pair<PatchMesh::Face, PatchMesh::Face> halves(const PatchMesh::Face& face,
   return {first, second};
 }
 
+bool may_cut(const PatchMesh& mesh, std::size_t face, const LeftAlone& alone) {
+  return alone.empty() || !alone[mesh.faces[face].source];
+}
+
 std::vector<std::size_t> by_descending(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -223,13 +227,13 @@ std::vector<std::uint32_t> bisect(PatchMesh& mesh, const std::vector<bool>& mark
   return parents;
 }
 
-void refine_to_size(PatchMesh& mesh, double size, std::size_t most) {
+void refine_to_size(PatchMesh& mesh, double size, std::size_t most, const LeftAlone& alone) {
   assert(size > 0.0);
   while (true) {
     std::vector<bool> marked(mesh.size());
     bool any = false;
     for (std::size_t f = 0; f < mesh.size(); ++f) {
-      marked[f] = mesh.longest_edge(f) > size;
+      marked[f] = mesh.longest_edge(f) > size && may_cut(mesh, f, alone);
       any = any || marked[f];
     }
     if (!any) return;
@@ -241,13 +245,16 @@ void refine_to_size(PatchMesh& mesh, double size, std::size_t most) {
   }
 }
 
-void refine_to_count(PatchMesh& mesh, std::size_t count) {
+void refine_to_count(PatchMesh& mesh, std::size_t count, const LeftAlone& alone) {
   // Edges within a quarter of an octave are split together: few rounds, yet even sizes.
   constexpr double kTogether = 0.84089641525371454;
   while (mesh.size() > 0 && mesh.size() < count) {
     std::vector<double> edges(mesh.size());
-    for (std::size_t f = 0; f < mesh.size(); ++f) edges[f] = mesh.longest_edge(f);
+    for (std::size_t f = 0; f < mesh.size(); ++f) {
+      edges[f] = may_cut(mesh, f, alone) ? mesh.longest_edge(f) : 0.0;
+    }
     const std::vector<std::size_t> order = by_descending(edges);
+    if (edges[order.front()] == 0.0) return;
     const double least = kTogether * edges[order.front()];
     const auto wanted = static_cast<std::size_t>(
         std::find_if(order.begin(), order.end(), [&](std::size_t f) { return edges[f] < least; }) -

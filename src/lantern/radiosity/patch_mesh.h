@@ -40,12 +40,16 @@ PatchMesh make_patch_mesh(const World& world);
 /// each face the one that it was or is a part of.
 std::vector<std::uint32_t> bisect(PatchMesh& mesh, const std::vector<bool>& marked);
 
+/// Triangles of the world whose faces are left as they are, save for what closure asks for; empty:
+/// none.
+using LeftAlone = std::vector<bool>;
+
 /// Until no edge is longer than `size` (above zero, metres). Throws Error once there are more faces
 /// than `most`.
-void refine_to_size(PatchMesh& mesh, double size, std::size_t most);
+void refine_to_size(PatchMesh& mesh, double size, std::size_t most, const LeftAlone& alone = {});
 
 /// Longest edges first, until one more bisection would make more than `count` faces.
-void refine_to_count(PatchMesh& mesh, std::size_t count);
+void refine_to_count(PatchMesh& mesh, std::size_t count, const LeftAlone& alone = {});
 
 /// Bisects the faces of the highest scores (one for each face), and what they fall into, until one
 /// more would make more than `count` faces. `decay` is the score of a half over that of its whole.

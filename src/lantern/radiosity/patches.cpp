@@ -101,7 +101,7 @@ double exposed_share(const World& world, const Tracer& tracer, const Patches& pa
       const Vec3 position = world.positions[v.x] * (1.0f - place.x - place.y) +
                             world.positions[v.y] * place.x + world.positions[v.z] * place.y;
       const std::uint64_t key = hash(element, static_cast<std::uint64_t>(count++));
-      if (!is_covered(world, patches.lit_back, tracer, position, normal, key)) ++open;
+      if (!is_covered(world, patches.lit, tracer, position, normal, key)) ++open;
     });
     return static_cast<double>(open) / count;
   };
@@ -124,7 +124,8 @@ void require_reflectance_below_one(const Scene& scene, const World& world, const
 
 }  // namespace
 
-Patches make_patches(const Scene& scene, const World& world, const Tracer& tracer, PatchMesh mesh) {
+Patches make_patches(const Scene& scene, const World& world, const Tracer& tracer, PatchMesh mesh,
+                     LitSides lit) {
   if (mesh.size() == 0) throw Error("the scene has no triangles");
   Patches patches;
   patches.mesh = std::move(mesh);
@@ -151,18 +152,23 @@ Patches make_patches(const Scene& scene, const World& world, const Tracer& trace
   });
   require_reflectance_below_one(scene, world, patches);
 
-  patches.lit_back = lit_backs(scene, world, make_patch_mesh(world), tracer);
-  const std::vector<bool>& lit_back = patches.lit_back;
+  patches.lit = std::move(lit);
   for (std::size_t i = 0; i < count; ++i) {
-    if (!lit_back[patches.mesh.faces[i].source]) continue;
+    if (!patches.lit(patches.mesh.faces[i].source, false)) continue;
     patches.back[i] = static_cast<std::uint32_t>(patches.elements());
     patches.patch.push_back(static_cast<std::uint32_t>(i));
     patches.emission.push_back(back_emission[i]);
   }
+  const auto all_lit = [](const std::vector<bool>& sides) {
+    return std::find(sides.begin(), sides.end(), false) == sides.end();
+  };
   patches.exposed.assign(patches.elements(), 1.0);
-  if (std::find(lit_back.begin(), lit_back.end(), false) != lit_back.end()) {
+  if (!all_lit(patches.lit.front) || !all_lit(patches.lit.back)) {
     parallel_for(patches.elements(), kGrain, [&](std::size_t e) {
-      patches.exposed[e] = exposed_share(world, tracer, patches, e);
+      const std::uint32_t triangle = patches.mesh.faces[patches.patch[e]].source;
+      patches.exposed[e] = patches.lit(triangle, patches.is_front(e))
+                               ? exposed_share(world, tracer, patches, e)
+                               : 0.0;
     });
   }
   SmoothVertices smooth = smooth_vertices(world, patches.mesh);
@@ -174,12 +180,15 @@ Patches make_patches(const Scene& scene, const World& world, const Tracer& trace
 Patches make_patches(const Scene& scene, const World& world, const Tracer& tracer,
                      const PatchOptions& options) {
   PatchMesh mesh = make_patch_mesh(world);
+  LitSides lit = lit_sides(scene, world, mesh, tracer);
+  LeftAlone dark(world.size());
+  for (std::uint32_t t = 0; t < world.size(); ++t) dark[t] = !lit(t, true) && !lit(t, false);
   if (options.size) {
-    refine_to_size(mesh, *options.size, kMostPatches);
+    refine_to_size(mesh, *options.size, kMostPatches, dark);
   } else {
-    refine_to_count(mesh, options.count);
+    refine_to_count(mesh, options.count, dark);
   }
-  return make_patches(scene, world, tracer, std::move(mesh));
+  return make_patches(scene, world, tracer, std::move(mesh), std::move(lit));
 }
 
 World patch_world(const World& world, const Patches& patches) {

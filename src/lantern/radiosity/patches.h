@@ -4,6 +4,7 @@
 // sides: element i < size() is the front of patch i, backs that light can come to follow.
 #pragma once
 
+#include "lantern/radiosity/exposure.h"
 #include "lantern/radiosity/patch_mesh.h"
 #include "lantern/scene/scene.h"
 #include "lantern/scene/world.h"
@@ -39,13 +40,13 @@ struct Patches {
   std::vector<uvec3> smooth_vertices;
   std::size_t smooth_vertex_count = 0;
 
-  // Per triangle of the world: whether light can come to its back.
-  std::vector<bool> lit_back;
+  // Per triangle of the world.
+  LitSides lit;
 
   // Per element.
   std::vector<std::uint32_t> patch;
   std::vector<glm::dvec3> emission;  // radiosity that leaves by itself: π times the mean radiance
-  std::vector<double> exposed;       // the share of the area that is not covered, in [0, 1]
+  std::vector<double> exposed;       // the share of the area that light can come to, in [0, 1]
 
   std::size_t size() const { return area.size(); }
   std::size_t elements() const { return patch.size(); }
@@ -60,13 +61,15 @@ struct Patches {
   }
 };
 
-/// The surfaces cut as `options` say. Throws Error for a scene without triangles, for patches that
-/// reflect all light in some channel and for a size that makes too many.
+/// The surfaces cut as `options` say, but for those that no light comes to. Throws Error for a
+/// scene without triangles, for patches that reflect all light in some channel and for a size that
+/// makes too many.
 Patches make_patches(const Scene& scene, const World& world, const Tracer& tracer,
                      const PatchOptions& options);
 
-/// The patches of a mesh that was refined further.
-Patches make_patches(const Scene& scene, const World& world, const Tracer& tracer, PatchMesh mesh);
+/// The patches of a mesh of one's own, as one that was refined further; `lit` is of the world.
+Patches make_patches(const Scene& scene, const World& world, const Tracer& tracer, PatchMesh mesh,
+                     LitSides lit);
 
 /// The patches as a world: triangle i is patch i, with the materials, texture coordinates and
 /// colours of the surfaces, so that a tracer over it tells patches apart. It has no normals.

@@ -114,6 +114,35 @@ std::vector<glm::dvec3> solve_by_elimination(const Patches& patches, const FormF
   return irradiance;
 }
 
+double gauss_seidel_seconds(const Patches& patches) {
+  // Larger than caches, so that memory counts as it will.
+  constexpr std::size_t kTrial = std::size_t{1} << 24;
+  const std::size_t n = patches.elements();
+  const std::size_t rows = std::clamp<std::size_t>(kTrial / n, 1, n);
+  const std::vector<float> trial(rows * n, 1.0f);
+  std::array<std::vector<double>, 3> radiosity;
+  radiosity.fill(std::vector<double>(n, 1.0));
+  std::vector<glm::dvec3> sums(rows);
+  const auto start = std::chrono::steady_clock::now();
+  parallel_for(rows, 4, [&](std::size_t i) {
+    sums[i] = gathered(std::span(trial).subspan(i * n, n), radiosity, 0, n);
+  });
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+
+  glm::dvec3 reflected(0.0);
+  double area = 0.0;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    reflected += patches.area[i] * patches.reflectance[i];
+    area += patches.area[i];
+  }
+  const double reflectance = std::max({reflected.r, reflected.g, reflected.b}) / area;
+  // Sweeps converge about as two bounces of light each.
+  const double sweeps = reflectance > 0.0
+                            ? 0.5 * std::log(GaussSeidelOptions{}.tolerance) / std::log(reflectance)
+                            : 1.0;
+  return elapsed.count() * static_cast<double>(n) / static_cast<double>(rows) * (1.0 + sweeps);
+}
+
 GaussSeidelResult solve_by_gauss_seidel(const Patches& patches, const FormFactors& factors,
                                         std::span<const glm::dvec3> external,
                                         const GaussSeidelOptions& options, const StopFlag& stop) {

@@ -14,6 +14,8 @@
 
 namespace lantern {
 
+enum class Solver { kGaussSeidel, kElimination };
+
 /// Bytes that solve_by_elimination() takes beside the form factors.
 std::uint64_t elimination_bytes(std::size_t elements);
 
@@ -29,6 +31,10 @@ struct GaussSeidelOptions {
   double tolerance = 1e-9;  // on the change of radiosity in a sweep, relative to the largest
   int most_sweeps = 10'000;
 };
+
+/// Seconds that the sweeps are expected to take: their number from the mean reflectance, one from a
+/// trial of its arithmetic.
+double gauss_seidel_seconds(const Patches& patches);
 
 struct GaussSeidelResult {
   std::vector<glm::dvec3> irradiance;

@@ -109,7 +109,7 @@ GpuRadiosity::Work::Work(const World& world, const Tracer& tracer, const Patches
       gathered_target_({&gathered_}),
       received_target_(cleared(received_)),
       tally_target_(cleared(tally_)),
-      items_(world, patches.lit_back, options.hemicube, files_),
+      items_(world, patches.lit.back, options.hemicube, files_),
       gather_(files_, "shaders/full_screen.vert.glsl", "shaders/gather.frag.glsl"),
       receive_(files_, "shaders/full_screen.vert.glsl", "shaders/receive.frag.glsl"),
       count_lost_(files_, "shaders/full_screen.vert.glsl", "shaders/receive.frag.glsl",
