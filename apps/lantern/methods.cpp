@@ -48,6 +48,7 @@ const std::vector<SpecialOption>& special_options() {
        {Method::kRadiosityMatrix, Method::kRadiosityHemicube, Method::kRadiosityProgressive,
         Method::kRadiosityGpu}},
       {"--solver", {Method::kRadiosityMatrix}},
+      {"--time", {Method::kInstantRadiosity, Method::kPath, Method::kRadiosityProgressive}},
       {"--refine", {Method::kRadiosityMatrix}},
       {"--hemicube",
        {Method::kRadiosityHemicube, Method::kRadiosityProgressive, Method::kRadiosityGpu}},

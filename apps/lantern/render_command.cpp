@@ -225,6 +225,7 @@ nlohmann::json radiosity_json(Method method, const RadiosityStatistics& s) {
     out["open_pairs"] = s.form_factors.open_pairs;
     out["screened_pairs"] = s.form_factors.screened_pairs;
     out["bytes_expected"] = s.bytes_expected;
+    out["seconds_matrix"] = s.seconds_matrix;
     out["seconds_expected"] = s.seconds_expected;
   } else {
     out["hemicubes"] = s.hemicubes;

@@ -248,8 +248,53 @@ TEST_F(CommandTest, RadiosityTellsStatisticsAsJson) {
   }
 }
 
+TEST_F(CommandTest, TheMatrixTellsItsMemoryAndTimeBeforehandAndKeepsToTheMemory) {
+  for (const std::string solver : {"gauss-seidel", "elimination"}) {
+    const Outcome outcome =
+        run(radiosity("matrix", {"--json", "--patches", "400", "--solver", solver}));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("a matrix of"));
+    const auto json = nlohmann::json::parse(outcome.out);
+    EXPECT_LE(json["patches"], 400);
+    EXPECT_GT(json["seconds_expected"], 0.0);
+    EXPECT_GT(json["seconds_matrix"], 0.0);
+    const auto elements = json["elements"].get<std::uint64_t>();
+    const std::uint64_t each = solver == "elimination" ? 12 : 4;
+    EXPECT_EQ(json["bytes_expected"], each * elements * elements);
+    // A convex room needs no rays, and its rows add up to 1 but for the cubatures' error.
+    EXPECT_EQ(json["form_factor_rays"], 0);
+    EXPECT_NEAR(json["row_sums"][0], 1.0, 1e-3);
+    EXPECT_NEAR(json["row_sums"][2], 1.0, 1e-3);
+    EXPECT_LT(json["reciprocity_error"], 1e-6);
+    const Image image = read_image(folder_ / "a.pfm");
+    for (const Rgb& pixel : image.pixels) EXPECT_NEAR(pixel.g, 2.0f, 4e-3f);
+  }
+}
+
 TEST_F(CommandTest, RadiosityRefusesAMatrixLargerThanMemory) {
-  expect_failure(run(radiosity("hemicube", {"--patches", "1000000"})), 1, "GB");
+  for (const std::string method : {"hemicube", "matrix"}) {
+    expect_failure(run(radiosity(method, {"--patches", "1000000"})), 1, "GB");
+    expect_failure(run(radiosity(method, {"--patch-size", "0.0001"})), 1, "GB");
+  }
+}
+
+TEST_F(CommandTest, RadiosityRefusesSurfacesThatReflectAllLight) {
+  std::ofstream(folder_ / "white.mtl") << "newmtl white\nKd 1 1 1\nKe 1 1 1\n";
+  std::ofstream(folder_ / "white.obj") << "mtllib white.mtl\nusemtl white\n"
+                                          "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  expect_failure(
+      run({"render", path("white.obj"), "-o", path("a.pfm"), "--method", "radiosity-matrix"}), 1,
+      "reflects all light");
+}
+
+TEST_F(CommandTest, RadiosityIgnoresSurfacesOfNoArea) {
+  std::ofstream(folder_ / "flat.mtl") << "newmtl grey\nKd .5 .5 .5\nKe 1 1 1\n";
+  std::ofstream(folder_ / "flat.obj") << "mtllib flat.mtl\nusemtl grey\nv 0 0 0\nv 1 0 0\n"
+                                         "v 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\n";
+  const Outcome outcome = run({"render", path("flat.obj"), "-o", path("a.pfm"), "--size", "8x8",
+                               "--method", "radiosity-matrix", "--patches", "20", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_GT(nlohmann::json::parse(outcome.out)["patches"], 1);
 }
 
 TEST_F(CommandTest, ProgressiveRadiosityKeepsToItsTime) {
@@ -453,7 +498,12 @@ TEST_F(CommandTest, RefusesWrongUsage) {
       {"render", own("furnace.scene"), "-o", path("a.exr"), "--method", "path", "--variance",
        path("a.exr")},
       render("a.png", {"--variance", path("v.exr")}),
-      render("a.png", {"--method", "radiosity-matrix"}),
+      render("a.png", {"--method", "radiosity-matrix"}),  // --lights
+      radiosity("matrix", {"--hemicube", "32"}),
+      radiosity("matrix", {"--solver", "guess"}),
+      radiosity("matrix", {"--patch-size", "0"}),
+      radiosity("matrix", {"--time", "1"}),
+      radiosity("hemicube", {"--solver", "elimination"}),
       render("a.png", {"--method", "guess"}),
       render("a.png", {"--backend", "gl", "--compensate"}),
       render("a.png", {"--backend", "gl", "--tile", "4"}),

@@ -306,7 +306,9 @@ TEST(Progressive, FluxIsConservedAndTheUnshotFallsWithEveryShot) {
 
 TEST(Progressive, TakesTheIrradianceOfLightsThatAreNoPatches) {
   // A room that is lit evenly from nowhere: E/(1-a) again, E the given irradiance.
-  const Patched room(test::box_room({2.0f, 1.5f, 2.5f}, 0.5f, 0.0f), 300);
+  Scene scene = test::box_room({2.0f, 1.5f, 2.5f}, 0.5f, 0.0f);
+  scene.lights.emplace_back();  // else patches know that no light can come to them
+  const Patched room(std::move(scene), 300);
   const std::vector<glm::dvec3> direct(room.patches.elements(), glm::dvec3(1.0, 2.0, 4.0));
   ProgressiveRadiosity solution = room.progressive({.cutoff = 1e-4}, direct);
   while (solution.shoot()) {

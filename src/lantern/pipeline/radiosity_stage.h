@@ -7,6 +7,7 @@
 #include "lantern/radiosity/patches.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -22,10 +23,13 @@ struct RadiosityStage {
   RadiosityStage(const RenderJob& job, Patches made);
 };
 
-/// Throws Error with the numbers if a matrix between so many elements does not fit in memory:
-/// before patches are made with the count that was asked for, and before it is allocated with
-/// theirs.
-void require_matrix_memory(std::size_t elements);
+/// Throws Error with the numbers if a matrix between so many elements and what else is needed
+/// beside it do not fit in memory.
+void require_matrix_memory(std::size_t elements, std::uint64_t bytes_beside = 0);
+
+/// The fewest elements that the options can lead to, known before patches are made: as many as are
+/// asked for, or as can cover the scene with equilateral patches of the longest edge allowed.
+std::size_t least_elements(const RenderJob& job);
 
 /// The picture of the elements' irradiance, drawn also after a stop.
 Image draw(const RenderJob& job, const Patches& patches, std::span<const glm::dvec3> irradiance);

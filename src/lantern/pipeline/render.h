@@ -105,6 +105,7 @@ struct RadiosityStatistics {
   std::size_t hemicubes = 0;
   std::size_t rounds = 0;            // of refinement
   std::uint64_t bytes_expected = 0;  // of the last round's matrix, as told beforehand
+  double seconds_matrix = 0.0;       // that it took
   double seconds_expected = 0.0;     // to assemble and solve it, likewise
   FormFactorCounts form_factors;
   RowSums row_sums;

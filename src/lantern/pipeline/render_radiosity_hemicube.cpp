@@ -12,7 +12,7 @@ Rendered render_radiosity_hemicube(const RenderJob& job) {
   Rendered result;
   RenderStatistics& statistics = result.statistics;
   RadiosityStatistics& of_radiosity = statistics.radiosity;
-  if (!options.patches.size) require_matrix_memory(options.patches.count);
+  require_matrix_memory(least_elements(job));
   const RadiosityStage stage(job);
   of_radiosity.patches = stage.patches.size();
   of_radiosity.elements = stage.patches.elements();

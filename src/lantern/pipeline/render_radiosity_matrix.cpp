@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/pipeline/render_radiosity_matrix.h"
 
-#include "lantern/core/memory.h"
 #include "lantern/pipeline/radiosity_stage.h"
 #include "lantern/radiosity/refinement.h"
 #include "lantern/radiosity/solve.h"
@@ -17,31 +16,8 @@ namespace {
 /// Matrices that grow by this from round to round take a third of the last one's time together.
 constexpr double kGrowth = 2.0;
 
-std::uint64_t matrix_bytes(std::size_t elements, Solver solver) {
-  return FormFactors::bytes(elements) +
-         (solver == Solver::kElimination ? elimination_bytes(elements) : 0);
-}
-
-void require_matrix_memory(std::size_t elements, Solver solver) {
-  require_memory(matrix_bytes(elements, solver), fmt::format("a matrix for {} patches", elements),
-                 "take fewer or larger patches, or radiosity-progressive");
-}
-
-/// Refuses what cannot be, before patches are made: as many as were asked for, or as few as can
-/// cover the scene if their edges are as long as allowed, equilateral.
-void require_memory_beforehand(const RenderJob& job) {
-  const RadiosityOptions& options = job.options.radiosity;
-  std::size_t least = std::max(options.patches.count, job.world.size());
-  if (options.patches.size) {
-    double area = 0.0;
-    for (std::uint32_t t = 0; t < job.world.size(); ++t) {
-      area += static_cast<double>(job.world.area(t));
-    }
-    const double largest = 0.25 * std::sqrt(3.0) * *options.patches.size * *options.patches.size;
-    constexpr double kMost = 1e9;  // whose square is still a number of bytes
-    least = std::max(job.world.size(), static_cast<std::size_t>(std::min(area / largest, kMost)));
-  }
-  require_matrix_memory(least, options.solver);
+std::uint64_t bytes_beside(std::size_t elements, Solver solver) {
+  return solver == Solver::kElimination ? elimination_bytes(elements) : 0;
 }
 
 /// One matrix: assembled and solved, its memory and time told beforehand.
@@ -52,11 +28,12 @@ class Round {
   std::vector<glm::dvec3> solve(RadiosityStatistics& statistics) {
     const Solver solver = job_.options.radiosity.solver;
     const std::size_t n = stage_.patches.elements();
-    require_matrix_memory(n, solver);
+    require_matrix_memory(n, bytes_beside(n, solver));
     const double solving = solver == Solver::kElimination ? elimination_seconds(stage_.patches)
                                                           : gauss_seidel_seconds(stage_.patches);
-    statistics.bytes_expected = matrix_bytes(n, solver);
+    statistics.bytes_expected = FormFactors::bytes(n) + bytes_beside(n, solver);
     double expected = 0.0;
+    const Stopwatch watch;
     const FormFactors factors(job_.world, job_.tracer, stage_.patches, job_.stop,
                               [&](double share, double assembly) {
                                 // By then blocks from all over the matrix are done.
@@ -70,10 +47,18 @@ class Round {
                                 job_.report({done / whole, whole - done, statistics.rounds});
                               });
     statistics.seconds_expected = expected;
+    std::vector<glm::dvec3> irradiance = solve_for(factors, statistics);
+    statistics.seconds_matrix = watch.seconds();
     statistics.form_factors = factors.counts();
     statistics.row_sums = row_sums(stage_.patches, factors);
     statistics.reciprocity_error = reciprocity_error(stage_.patches, factors);
-    if (solver == Solver::kElimination) {
+    return irradiance;
+  }
+
+ private:
+  std::vector<glm::dvec3> solve_for(const FormFactors& factors,
+                                    RadiosityStatistics& statistics) const {
+    if (job_.options.radiosity.solver == Solver::kElimination) {
       return solve_by_elimination(stage_.patches, factors, stage_.external);
     }
     GaussSeidelResult solution =
@@ -82,7 +67,6 @@ class Round {
     return std::move(solution.irradiance);
   }
 
- private:
   void tell(std::uint64_t bytes, double seconds) const {
     if (!job_.options.notice) return;
     constexpr double kMegabyte = 1e6;
@@ -112,7 +96,8 @@ Rendered render_radiosity_matrix(const RenderJob& job) {
   Rendered result;
   RenderStatistics& statistics = result.statistics;
   RadiosityStatistics& of_radiosity = statistics.radiosity;
-  require_memory_beforehand(job);
+  const std::size_t least = least_elements(job);
+  require_matrix_memory(least, bytes_beside(least, options.solver));
   // Patches of a given size are that size; of a given count the first are fewer, and the rest go
   // where they are needed.
   const int refinements = options.patches.size ? 0 : options.refinements;

@@ -27,7 +27,7 @@ Vec2 in_part(std::size_t k, Random& random) {
 }  // namespace
 
 ElementPoints::ElementPoints(const World& world, const Tracer& tracer, const Patches& patches)
-    : points_(patches.elements() * kPoints) {
+    : exposed_(patches.elements() * kPoints), whole_(patches.elements() * kPoints) {
   constexpr std::size_t kGrain = 64;
   // A patch with a hundredth of it exposed still finds most of its points.
   constexpr int kTries = 200;
@@ -42,12 +42,13 @@ ElementPoints::ElementPoints(const World& world, const Tracer& tracer, const Pat
     for (std::size_t k = 0; k < kPoints; ++k) {
       Random random(hash(e, k));
       Vec3 position = point(in_part(k, random));
+      whole_[e * kPoints + k] = off_surface(position, normal, scale);
       for (int i = 0; partly && i < kTries &&
                       is_covered(world, patches.lit, tracer, position, normal, hash(e, k));
            ++i) {
         position = point(random.in_triangle());
       }
-      points_[e * kPoints + k] = off_surface(position, normal, scale);
+      exposed_[e * kPoints + k] = off_surface(position, normal, scale);
     }
   });
 }

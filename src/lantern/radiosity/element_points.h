@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where rays to and from elements start and end: points spread over the exposed part of each.
+// Where rays to and from elements start and end: points spread over the exposed part of each, and,
+// to compare with, over the whole of it.
 #pragma once
 
 #include "lantern/radiosity/patches.h"
@@ -17,13 +18,17 @@ class ElementPoints {
   /// Takes rays only where a patch is partly covered. The same patches, the same points.
   ElementPoints(const World& world, const Tracer& tracer, const Patches& patches);
 
-  /// A hair off the surface, on the element's side.
+  /// Of the exposed part; a hair off the surface, on the element's side.
   const Vec3& at(std::size_t element, std::size_t k) const {
-    return points_[element * kPoints + k];
+    return exposed_[element * kPoints + k];
+  }
+  /// Of the whole, covered or not. The same points where nothing is covered.
+  const Vec3& on_whole(std::size_t element, std::size_t k) const {
+    return whole_[element * kPoints + k];
   }
 
  private:
-  std::vector<Vec3> points_;
+  std::vector<Vec3> exposed_, whole_;
 };
 
 }  // namespace lantern

@@ -91,18 +91,35 @@ class Assembler {
       return unoccluded;
     }
     ++counts.screened_pairs;
-    return shares * unoccluded * visible_share(i, j, counts);
+    return unoccluded * std::min(1.0, shares * visible_share(i, j, counts));
   }
 
-  /// Of the exchange of the exposed parts.
-  double visible_share(std::size_t i, std::size_t j, FormFactorCounts& counts) const {
+  /// cos θ_i cos θ_j / r² of two points; 0 where they do not face each other.
+  double weight(std::size_t i, std::size_t j, const Vec3& way) const {
+    const float square = glm::dot(way, way);
+    const float cosines = std::max(glm::dot(way, Vec3(shapes_[i].normal)), 0.0f) *
+                          std::max(-glm::dot(way, Vec3(shapes_[j].normal)), 0.0f);
+    return square > 0.0f ? static_cast<double>(cosines / (square * square)) : 0.0;
+  }
+
+  /// Where errors show: light that comes straight from an emitter, and what is close to the foot of
+  /// an object, where one point counts for more than another.
+  bool needs_many_rays(std::size_t i, std::size_t j) const {
+    constexpr double kClose = 4.0;  // in radii
     const bool emits =
         patches_.emission[i] != glm::dvec3(0.0) || patches_.emission[j] != glm::dvec3(0.0);
+    const bool at_foot = patches_.exposed[i] * patches_.exposed[j] < 1.0 &&
+                         glm::distance(shapes_[i].centre, shapes_[j].centre) <
+                             kClose * (shapes_[i].radius + shapes_[j].radius);
+    return emits || at_foot;
+  }
+
+  /// What passes between points of the exposed parts, over what would between points of the whole.
+  double visible_share(std::size_t i, std::size_t j, FormFactorCounts& counts) const {
     const std::size_t packets =
-        (emits ? FormFactors::kRaysOfEmitter : FormFactors::kRays) / kPacket;
+        (needs_many_rays(i, j) ? FormFactors::kManyRays : FormFactors::kRays) / kPacket;
     // Point k of one goes with point k ^ shift of the other: over all shifts each with each.
     const std::size_t first = hash(i, j) % kPacket;
-    const Vec3 normal_i(shapes_[i].normal), normal_j(shapes_[j].normal);
     double all = 0.0, seen = 0.0;
     for (std::size_t packet = 0; packet < packets; ++packet) {
       const std::size_t shift = first ^ packet;
@@ -110,13 +127,10 @@ class Assembler {
       LaneMask active{};
       double weights[kPacket];
       for (std::size_t k = 0; k < kPacket; ++k) {
+        all += weight(i, j, points_.on_whole(j, k ^ shift) - points_.on_whole(i, k));
         const Vec3 from = points_.at(i, k);
         const Vec3 way = points_.at(j, k ^ shift) - from;
-        const float square = glm::dot(way, way);
-        const float cosines =
-            std::max(glm::dot(way, normal_i), 0.0f) * std::max(-glm::dot(way, normal_j), 0.0f);
-        weights[k] = square > 0.0f ? static_cast<double>(cosines / (square * square)) : 0.0;
-        all += weights[k];
+        weights[k] = weight(i, j, way);
         active.lane[k] = weights[k] > 0.0 ? -1 : 0;
         rays.origin_x[k] = from.x;
         rays.origin_y[k] = from.y;

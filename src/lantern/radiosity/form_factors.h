@@ -29,9 +29,10 @@ class FormFactors {
  public:
   /// Where something may be between two elements, the share of kRays rays that pass, weighted by
   /// what they would carry, scales the unoccluded factor: that share has a standard error of at
-  /// most 1/8. Elements that emit send kRaysOfEmitter: at most 1/32. Ends early once `stop` is set.
+  /// most 1/8. Where one emits, or is covered in part and close, kManyRays do: at most 1/32. Ends
+  /// early once `stop` is set.
   static constexpr std::size_t kRays = 16;
-  static constexpr std::size_t kRaysOfEmitter = 256;
+  static constexpr std::size_t kManyRays = 256;
 
   FormFactors(const World& world, const Tracer& tracer, const Patches& patches,
               const StopFlag& stop, const AssemblyReport& report = {});
