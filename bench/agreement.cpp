@@ -99,6 +99,7 @@ struct Candidate {
 };
 constexpr Candidate kCandidates[] = {{"path", Method::kPath},
                                      {"instant-radiosity", Method::kInstantRadiosity},
+                                     {"radiosity-matrix", Method::kRadiosityMatrix},
                                      {"radiosity-hemicube", Method::kRadiosityHemicube},
                                      {"radiosity-progressive", Method::kRadiosityProgressive},
                                      {"radiosity-gpu", Method::kRadiosityGpu}};
