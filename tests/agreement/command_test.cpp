@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The command as its users meet it: what it writes, what it says and how it exits.
 #include "lantern/core/file.h"
+#include "lantern/core/memory.h"
 #include "lantern/image/compare.h"
 #include "lantern/image/flip.h"
 #include "lantern/image/read.h"
@@ -276,6 +277,11 @@ TEST_F(CommandTest, RadiosityRefusesAMatrixLargerThanMemory) {
     expect_failure(run(radiosity(method, {"--patches", "1000000"})), 1, "GB");
     expect_failure(run(radiosity(method, {"--patch-size", "0.0001"})), 1, "GB");
   }
+}
+
+TEST_F(CommandTest, RadiosityRefusesMorePatchesThanMemoryHolds) {
+  if (available_bytes() > 24'500'000'000) GTEST_SKIP() << "this machine holds as many as may be";
+  expect_failure(run(radiosity("progressive", {"--patches", "16000000"})), 1, "GB");
 }
 
 TEST_F(CommandTest, RadiosityRefusesSurfacesThatReflectAllLight) {

@@ -2,6 +2,7 @@
 #include "lantern/radiosity/patches.h"
 
 #include "lantern/core/error.h"
+#include "lantern/core/memory.h"
 #include "lantern/core/parallel.h"
 #include "lantern/radiosity/exposure.h"
 #include "lantern/radiosity/random.h"
@@ -15,8 +16,10 @@ namespace lantern {
 namespace {
 
 constexpr std::size_t kGrain = 16;
-/// Their arrays fill about 4 GiB.
 constexpr std::size_t kMostPatches = 16'000'000;
+/// What a patch takes at the worst moment, with the tree that tells patches apart: 16 million were
+/// seen to fill 23 GB.
+constexpr std::uint64_t kBytesPerPatch = 1536;
 
 const Material& material_of(const Scene& scene, const World& world, std::uint32_t triangle) {
   return scene.materials[index(world.materials[triangle])];
@@ -184,8 +187,11 @@ Patches make_patches(const Scene& scene, const World& world, const Tracer& trace
   LeftAlone dark(world.size());
   for (std::uint32_t t = 0; t < world.size(); ++t) dark[t] = !lit(t, true) && !lit(t, false);
   if (options.size) {
-    refine_to_size(mesh, *options.size, kMostPatches, dark);
+    const std::uint64_t room = available_bytes() / kBytesPerPatch;
+    refine_to_size(mesh, *options.size, std::min<std::uint64_t>(kMostPatches, room), dark);
   } else {
+    require_memory(options.count * kBytesPerPatch, fmt::format("{} patches", options.count),
+                   "ask for fewer");
     refine_to_count(mesh, options.count, dark);
   }
   return make_patches(scene, world, tracer, std::move(mesh), std::move(lit));
