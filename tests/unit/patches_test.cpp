@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
@@ -274,6 +275,32 @@ TEST(Interpolation, WhatIsLinearOnAWallStaysLinearToItsBorders) {
       const glm::dvec3 expected = linear(patches.mesh.corner(i, k));
       // The ridge takes a millionth part of the gradient or a few.
       EXPECT_LT(glm::distance(at.front[patches.smooth_vertices[i][k]], expected), 1e-5);
+    }
+  }
+}
+
+TEST(Interpolation, AWallKeepsItsMeanAcrossAShadowEdge) {
+  const Prepared prepared(box_room(Vec3(1, 1, 1), 0.5f, 1.0f));
+  const Patches patches = prepared.patches(600);
+  // Light in one corner of each wall: what a fit makes of it overshoots in bends.
+  std::vector<glm::dvec3> values;
+  for (std::size_t e = 0; e < patches.elements(); ++e) {
+    const glm::dvec3 c = patches.centre[e];
+    values.emplace_back(c.x + c.y + c.z < 1.2 ? 1.0 : 0.5, 0.3 + std::exp(-8.0 * c.x * c.y), 1.0);
+  }
+  const VertexValues at = interpolate_to_vertices(patches, values);
+  std::map<std::uint32_t, std::pair<glm::dvec3, glm::dvec3>> walls;  // of two triangles each
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const uvec3 v = patches.smooth_vertices[i];
+    auto& [expected, found] = walls[patches.mesh.faces[i].source / 2];
+    expected += patches.area[i] * values[i];
+    found += patches.area[i] * (at.front[v.x] + at.front[v.y] + at.front[v.z]) / 3.0;
+  }
+  EXPECT_EQ(walls.size(), 6u);
+  for (const auto& [wall, means] : walls) {
+    for (int c = 0; c < 3; ++c) {
+      // Equal but for rounding, as nothing had to be kept from going below zero.
+      EXPECT_NEAR(means.second[c] / means.first[c], 1.0, 1e-12) << wall;
     }
   }
 }

@@ -11,6 +11,8 @@
 namespace lantern {
 namespace {
 
+constexpr std::size_t kGrain = 256;
+
 /// Which patches stand around each smooth vertex.
 class Rings {
  public:
@@ -78,11 +80,35 @@ glm::dvec3 fit(const Patches& patches, std::span<const glm::dvec3> values,
                     high + slack);
 }
 
+/// Moves the values at the vertices so that their means over the patches come nearer to `values`:
+/// each vertex by the mean of what the patches around it lack. Over all patches of a surface
+/// nothing is lacking then, whatever the fit lost at shadow edges and in bends.
+void restore_means(const Patches& patches, std::span<const glm::dvec3> values, const Rings& rings,
+                   bool front, std::vector<glm::dvec3>& at) {
+  std::vector<glm::dvec3> lacking(patches.size(), glm::dvec3(0.0));
+  std::vector<double> weight(patches.size(), 0.0);
+  parallel_for(patches.size(), kGrain, [&](std::size_t i) {
+    const std::uint32_t e = patches.element_at(static_cast<std::uint32_t>(i), front);
+    if (e == kNoElement) return;
+    const uvec3 v = patches.smooth_vertices[i];
+    weight[i] = patches.exposed_area(e);
+    lacking[i] = values[e] - (at[v.x] + at[v.y] + at[v.z]) / 3.0;
+  });
+  parallel_for(at.size(), kGrain, [&](std::size_t v) {
+    double weights = 0.0;
+    glm::dvec3 sum(0.0);
+    for (const std::uint32_t patch : rings.around(static_cast<std::uint32_t>(v))) {
+      weights += weight[patch];
+      sum += weight[patch] * lacking[patch];
+    }
+    if (weights > 0.0) at[v] = glm::max(at[v] + sum / weights, 0.0);
+  });
+}
+
 }  // namespace
 
 VertexValues interpolate_to_vertices(const Patches& patches, std::span<const glm::dvec3> values) {
   assert(values.size() == patches.elements());
-  constexpr std::size_t kGrain = 256;
   // A plane takes three patches; where fewer meet, at a corner, those behind them help.
   constexpr std::size_t kEnough = 4;
   const Rings rings(patches);
@@ -112,6 +138,13 @@ VertexValues interpolate_to_vertices(const Patches& patches, std::span<const glm
     result.front[v] = fit(patches, values, around, {places[v], true});
     result.back[v] = fit(patches, values, around, {places[v], false});
   });
+  // The first restores the mean of each surface, the others what is left in single patches; more
+  // only sharpen grain.
+  constexpr int kRestorations = 3;
+  for (int i = 0; i < kRestorations; ++i) {
+    restore_means(patches, values, rings, true, result.front);
+    restore_means(patches, values, rings, false, result.back);
+  }
   return result;
 }
 

@@ -17,8 +17,8 @@ struct VertexValues {
 
 /// Values of elements, each at the centre of its patch, carried to the vertices: in each the plane
 /// that fits the patches around it best, weighted by their exposed area, so that neither gradients
-/// nor borders pull it to one side. Not negative, and not beyond the patches' own range by more
-/// than that range.
+/// nor borders pull it to one side; then moved so that the mean over a surface is that of its
+/// patches. Not negative.
 VertexValues interpolate_to_vertices(const Patches& patches, std::span<const glm::dvec3> values);
 
 }  // namespace lantern
