@@ -217,6 +217,7 @@ void add_bench(CLI::App& app) {
   CLI::App* bench = app.add_subcommand("bench", "Measure methods against each other");
   bench->require_subcommand(1);
   add_convergence(*bench);
+  add_bench_frames(*bench);
 }
 
 }  // namespace lantern::app

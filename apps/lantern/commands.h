@@ -19,6 +19,7 @@ void add_lights(CLI::App& app);
 void add_info(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_bench(CLI::App& app);
+void add_bench_frames(CLI::App& bench);
 void add_bake(CLI::App& app);
 
 }  // namespace lantern::app

@@ -260,6 +260,7 @@ void print_json(Method method, const Rendered& rendered, double seconds_load,
                         {"seconds_total", seconds_total},
                         {"peak_bytes", peak_bytes()},
                         {"warnings", rendered.warnings}};
+  if (!s.seconds_gpu.empty()) out["seconds_gpu"] = s.seconds_gpu;
   if (s.radiosity.patches > 0) out.update(radiosity_json(method, s.radiosity));
   fmt::print("{}\n", out.dump());
 }

@@ -445,6 +445,51 @@ TEST_F(CommandTest, MeasuresConvergence) {
   expect_failure(run({"bench"}), 2);
 }
 
+#ifdef LANTERN_WITH_GL
+TEST_F(CommandTest, MeasuresFrames) {
+  const auto bench = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"bench", "frames", own("cornell_box.scene"), "--size", "16x12",
+                               "--seconds", "0.001"});
+    return run(more);
+  };
+  const Outcome outcome = bench({"--lights", "4,8", "--pieces", "1,2", "--shadows", "stencil", "-o",
+                                 path("f.csv"), "-o", path("f.svg")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_THAT(outcome.out, HasSubstr("lights (R^2 "));
+  EXPECT_THAT(outcome.out, HasSubstr("triangles (R^2 "));
+  const std::string csv = read_text(folder_ / "f.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+  EXPECT_THAT(csv, HasSubstr("\nstencil,lights,"));
+  EXPECT_THAT(csv, HasSubstr("\nstencil,triangles,"));
+  EXPECT_THAT(read_text(folder_ / "f.svg"), testing::StartsWith("<svg "));
+  expect_failure(bench({"-o", path("f.txt")}), 1, "f.txt");
+  expect_failure(bench({"--lights", "0"}), 2, "--lights");
+  expect_failure(bench({"--shadows", "guess"}), 2, "--shadows");
+  expect_failure(bench({"--gl-device", "1000"}), 1, "no OpenGL device");
+}
+
+TEST_F(CommandTest, TellsWhatTheStagesOfGlTake) {
+  const auto stages = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--backend", "gl", "--json"});
+    const Outcome outcome = run(render("g.pfm", more));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  };
+  const auto json = stages({});
+  // Mesa has timers; other drivers need not.
+  if (!json.contains("seconds_gpu")) GTEST_SKIP() << "no timers";
+  EXPECT_THAT(keys(json["seconds_gpu"]),
+              testing::UnorderedElementsAre("surfaces", "volumes", "shading", "resolve"));
+  for (const auto& seconds : json["seconds_gpu"]) EXPECT_GE(seconds, 0.0);
+  EXPECT_THAT(keys(stages({"--shadows", "interleaved"})["seconds_gpu"]),
+              testing::Contains("filter"));
+  // Rays have no stages of a GPU.
+  const Outcome cpu = run(render("c.pfm", {"--json"}));
+  EXPECT_FALSE(nlohmann::json::parse(cpu.out).contains("seconds_gpu"));
+}
+#endif
+
 TEST_F(CommandTest, InfoTellsWhatIsThere) {
   const Outcome outcome = run({"info", own("cornell_box.scene"), "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;

@@ -37,6 +37,7 @@ struct Both {
   gl::ShaderFiles files;
   Surfaces surfaces;
   StencilShadows shadows;
+  StageTimes times;
   GBuffer g_buffer{kWidth, kHeight};
   gl::Texture mask{gl::Format::kRgba8, kWidth, kHeight};
   gl::Framebuffer framebuffer = gl::Framebuffer({&mask}, &g_buffer.depth);
@@ -61,7 +62,7 @@ struct Both {
     const auto emissions = g_buffer.framebuffer.read<float>(2);
     Difference difference;
     for (const LightGroup& group : group_lights(lights, {}, stage.world.coordinate_scale())) {
-      shadows.draw(group.points, view, framebuffer);
+      shadows.draw(group.points, view, framebuffer, times);
       const auto masks = framebuffer.read<std::uint8_t>();
       for (std::size_t pixel = 0; pixel < masks.size() / 4; ++pixel) {
         difference.pixels += group.points.size();

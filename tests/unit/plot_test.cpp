@@ -96,6 +96,18 @@ TEST(Plot, LeavesOutWhatHasNoLogarithm) {
   EXPECT_EQ(drawing.lines().at(0).size(), 2u);
 }
 
+TEST(Plot, TheLegendStandsWhereItIsTold) {
+  Plot plot{"t", "x", "y", {{"a", {{1, 1}, {2, 2}}}}};
+  const std::string left = to_svg(std::vector{plot});
+  plot.legend = LegendCorner::kLowerRight;
+  const std::string right = to_svg(std::vector{plot});
+  const auto place = [](const std::string& svg) {
+    const std::size_t legend = svg.find("class=\"legend\"");
+    return std::stod(svg.substr(svg.rfind("x=\"", legend) + 3));
+  };
+  EXPECT_GT(place(right), place(left));
+}
+
 TEST(Plot, MayBeEmpty) {
   EXPECT_TRUE(Drawing({}).lines().empty());
   EXPECT_TRUE(Drawing({{"t", "x", "y", {{"a", {}}}}}).lines().empty());

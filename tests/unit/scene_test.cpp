@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/core/error.h"
+#include "lantern/scene/subdivide.h"
 #include "lantern/scene/surface.h"
 #include "lantern/scene/texture.h"
 #include "lantern/scene/validate.h"
@@ -319,6 +320,48 @@ TEST(MakeWorld, ATransformBeyondAllNumbersIsAnError) {
   scene.meshes[0].positions[1].x = 1e30f;
   scene.instances[0].transform = glm::scale(Mat4(1.0f), Vec3(1e30f));
   EXPECT_THROW(make_world(scene), Error);
+}
+
+TEST(Subdivided, IsTheSameSurfaceInMoreTriangles) {
+  Scene scene = one_triangle();
+  Mesh& mesh = scene.meshes[0];
+  mesh.positions.emplace_back(1, 1, 0.3f);  // a bent quad
+  mesh.triangles.emplace_back(1, 3, 2);
+  mesh.normals = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}};
+  for (const Vec3& p : mesh.positions) mesh.texcoords.emplace_back(2.0f * p.x, 3.0f * p.y);
+  const World world = make_world(scene);
+  constexpr std::uint32_t kPieces = 7;
+  const World finer = subdivided(world, kPieces);
+  ASSERT_EQ(finer.size(), world.size() * kPieces * kPieces);
+  EXPECT_EQ(finer.materials.size(), finer.size());
+  EXPECT_EQ(finer.normals.size(), finer.positions.size());
+  EXPECT_TRUE(finer.colours.empty());
+  for (std::uint32_t t = 0; t < finer.size(); ++t) {
+    const Vec3 whole = world.area_vector(t / (kPieces * kPieces));
+    // As many pieces of the same size that face the same way; float rounding of the corners.
+    EXPECT_NEAR(glm::length(finer.area_vector(t) * float{kPieces * kPieces} - whole), 0.0f, 1e-5f);
+  }
+  for (std::size_t v = 0; v < finer.positions.size(); ++v) {
+    const Vec3 p = finer.positions[v];
+    EXPECT_NEAR(finer.texcoords[v].x, 2.0f * p.x, 1e-6f);
+    EXPECT_NEAR(finer.texcoords[v].y, 3.0f * p.y, 1e-6f);
+  }
+  // The diagonal's points are there twice, bit by bit the same; no two others are.
+  std::size_t same = 0;
+  for (std::size_t a = 0; a < finer.positions.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) same += finer.positions[a] == finer.positions[b] ? 1 : 0;
+  }
+  EXPECT_EQ(same, kPieces + 1);
+}
+
+TEST(Subdivided, InOnePieceIsTheSame) {
+  const World world = make_world(one_triangle());
+  const World same = subdivided(world, 1);
+  ASSERT_EQ(same.size(), 1u);
+  for (int corner = 0; corner < 3; ++corner) {
+    EXPECT_EQ(same.positions[same.triangles[0][corner]],
+              world.positions[world.triangles[0][corner]]);
+  }
 }
 
 TEST(MakeWorld, NoInstancesAreAnEmptyWorld) {

@@ -2,25 +2,15 @@
 #include "lantern/pipeline/convergence.h"
 
 #include "lantern/pipeline/plot.h"
+#include "lantern/pipeline/stopwatch.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <iterator>
-#include <sys/resource.h>
 
 namespace lantern {
 namespace {
-
-double processor_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
 
 const char* name(Effort effort) { return effort == Effort::kSeconds ? "seconds" : "lights"; }
 
@@ -54,9 +44,9 @@ ConvergencePoint measure(const Scene& scene, const ConvergenceRun& run, const Im
   point.run.options.width = reference.width;
   point.run.options.height = reference.height;
   const double processor_before = processor_seconds();
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const Rendered rendered = render(scene, point.run.options, stop);
-  point.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  point.seconds = watch.seconds();
   point.processor_seconds = processor_seconds() - processor_before;
   point.statistics = rendered.statistics;
   point.error = compare(rendered.image, reference);

@@ -3,6 +3,7 @@
 
 #include "lantern/gather/term_bound.h"
 #include "lantern/gl/context.h"
+#include "lantern/pipeline/raster_options.h"
 #include "lantern/raster/rasteriser.h"
 
 namespace lantern {
@@ -17,11 +18,7 @@ struct GlGather::State {
       : job(with),
         emitters(all),
         context({.api = {}, .device = with.options.gl_device}),
-        rasteriser(with.scene, with.world, context.info(),
-                   {.width = with.options.width,
-                    .height = with.options.height,
-                    .samples = with.options.samples,
-                    .tile = with.options.tile}) {}
+        rasteriser(with.scene, with.world, context.info(), raster_options(with.options)) {}
 };
 
 GlGather::GlGather(const RenderJob& job, const Emitters& emitters)
@@ -35,6 +32,10 @@ Image GlGather::gather(const VirtualLights& lights, std::size_t pass,
   const TermBound bound(job.scene, job.world, state_->emitters, lights, job.options.bound);
   return state_->rasteriser.draw(job.camera, lights, bound.of_lights(lights, job.tracer), pass,
                                  job.stop, pixels_done);
+}
+
+std::map<std::string, double> GlGather::seconds_of_stages() {
+  return state_->rasteriser.seconds_of_stages();
 }
 
 }  // namespace lantern

@@ -9,7 +9,9 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
+#include <string>
 
 namespace lantern {
 
@@ -23,6 +25,9 @@ class GlGather {
   /// See Rasteriser::draw().
   Image gather(const VirtualLights& lights, std::size_t pass,
                const std::function<void(std::size_t)>& pixels_done);
+
+  /// See Rasteriser::seconds_of_stages().
+  std::map<std::string, double> seconds_of_stages();
 
  private:
   struct State;

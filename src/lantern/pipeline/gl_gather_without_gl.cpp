@@ -16,4 +16,6 @@ Image GlGather::gather(const VirtualLights&, std::size_t, const std::function<vo
   return {};
 }
 
+std::map<std::string, double> GlGather::seconds_of_stages() { return {}; }
+
 }  // namespace lantern

@@ -171,6 +171,8 @@ void draw(const Plot& plot, double left, std::string& out) {
                  "{1:.2f})\">{2}</text>\n",
                  label_x, label_y, escaped(plot.y_label));
 
+  constexpr double kLegendWidth = 140.0;
+  const double legend_x = plot.legend == LegendCorner::kLowerLeft ? x0 + 16.0 : x1 - kLegendWidth;
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const Series& series = plot.series[i];
     const char* colour = kColours[i % kColours.size()];
@@ -186,10 +188,9 @@ void draw(const Plot& plot, double left, std::string& out) {
       fmt::format_to(to, "<path d=\"{}\" class=\"line\" stroke=\"{}\"/>\n{}\n", joined, colour,
                      marks);
     }
-    // Errors fall from left to right, so the legend has the lower left corner.
     const double row = y1 - 14.0 - kLegendLine * static_cast<double>(plot.series.size() - 1 - i);
     fmt::format_to(to, "{}<text x=\"{:.2f}\" y=\"{:.2f}\" class=\"legend\">{}</text>\n</g>\n",
-                   marker(i, x0 + 16.0, row), x0 + 28.0, row + 4.0, escaped(series.name));
+                   marker(i, legend_x, row), legend_x + 12.0, row + 4.0, escaped(series.name));
   }
 }
 

@@ -17,11 +17,15 @@ struct Series {
   std::vector<glm::dvec2> points;  // joined in this order
 };
 
+enum class LegendCorner { kLowerLeft, kLowerRight };
+
 struct Plot {
   std::string title;
   std::string x_label;
   std::string y_label;
   std::vector<Series> series;
+  LegendCorner legend =
+      LegendCorner::kLowerLeft;  // where what falls leaves room; kLowerRight: rises
 };
 
 /// The plots side by side.

@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -127,6 +128,7 @@ struct RenderStatistics {
   double seconds_prepare = 0.0;  // world, tree, emitters
   double seconds_lights = 0.0;
   double seconds_gather = 0.0;
+  std::map<std::string, double> seconds_gpu;  // GL: of each stage; empty without timers
 };
 
 struct Rendered {

@@ -21,10 +21,11 @@ gl::Program shade_program(const gl::ShaderFiles& files, LightFormula formula) {
 
 }  // namespace
 
-Lighting::Lighting(const Surfaces& surfaces, StencilShadows& shadows, const gl::ShaderFiles& files,
-                   int width, int height)
+Lighting::Lighting(const Surfaces& surfaces, StencilShadows& shadows, StageTimes& times,
+                   const gl::ShaderFiles& files, int width, int height)
     : surfaces_(surfaces),
       shadows_(shadows),
+      times_(times),
       g_buffer_(width, height),
       mask_(gl::Format::kRgba8, width, height),
       mask_framebuffer_({&mask_}, &g_buffer_.depth),
@@ -37,12 +38,14 @@ Lighting::Lighting(const Surfaces& surfaces, StencilShadows& shadows, const gl::
 
 void Lighting::draw(const View& view, std::span<const LightGroup> groups,
                     const std::function<bool()>& group_done) {
+  times_.begin(Stage::kSurfaces);
   surfaces_.draw(view, g_buffer_);
+  times_.end();
   irradiance_[0].framebuffer.bind();
   const float none[4] = {};
   glClearBufferfv(GL_COLOR, 0, none);
   for (const LightGroup& group : groups) {
-    shadows_.draw(group.points, view, mask_framebuffer_);
+    shadows_.draw(group.points, view, mask_framebuffer_, times_);
     add(group);
     if (!group_done()) break;
   }
@@ -54,6 +57,7 @@ void Lighting::add(const LightGroup& group) {
   std::copy(group.records.begin(), group.records.end(), records.begin());
   light_block_.write(std::span<const LightRecord>(records));
   light_block_.bind_as_uniforms(kLightsBinding);
+  times_.begin(Stage::kShading);
   const gl::Program& program = shade_[static_cast<std::size_t>(group.formula)];
   program.set("u_points", 0, g_buffer_.points);
   program.set("u_reflectances", 1, g_buffer_.reflectances);
@@ -62,6 +66,7 @@ void Lighting::add(const LightGroup& group) {
   program.set("u_count", static_cast<int>(group.records.size()));
   irradiance_[1].framebuffer.bind();
   gl::draw_full_screen(no_vertices_);
+  times_.end();
   std::swap(irradiance_[0], irradiance_[1]);
   gl::check("shading");
 }

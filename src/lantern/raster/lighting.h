@@ -6,6 +6,7 @@
 #include "lantern/gl/objects.h"
 #include "lantern/gl/program.h"
 #include "lantern/raster/raster_lights.h"
+#include "lantern/raster/stage_times.h"
 #include "lantern/raster/stencil_shadows.h"
 #include "lantern/raster/surfaces.h"
 #include "lantern/raster/view.h"
@@ -27,9 +28,9 @@ struct Target {
 
 class Lighting {
  public:
-  /// Keeps references to `surfaces` and `shadows`. Views must have this size.
-  Lighting(const Surfaces& surfaces, StencilShadows& shadows, const gl::ShaderFiles& files,
-           int width, int height);
+  /// Keeps references to `surfaces`, `shadows` and `times`. Views must have this size.
+  Lighting(const Surfaces& surfaces, StencilShadows& shadows, StageTimes& times,
+           const gl::ShaderFiles& files, int width, int height);
 
   /// Calls `group_done` after each group; once it returns false the rest is left out.
   void draw(const View& view, std::span<const LightGroup> groups,
@@ -44,6 +45,7 @@ class Lighting {
 
   const Surfaces& surfaces_;
   StencilShadows& shadows_;
+  StageTimes& times_;
   GBuffer g_buffer_;
   gl::Texture mask_;
   gl::Framebuffer mask_framebuffer_;

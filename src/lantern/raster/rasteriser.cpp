@@ -78,6 +78,7 @@ struct Rasteriser::State {
   RasterOptions options;
   ViewOptions view_options;
   gl::ShaderFiles files;
+  StageTimes times;
   Surfaces surfaces;
   StencilShadows shadows;
   Lighting lighting;
@@ -97,23 +98,32 @@ struct Rasteriser::State {
         surfaces(scene, all, files),
         shadows(all, files,
                 gl.has(gl::kDepthClamp) ? VolumeMethod::kFromEye : VolumeMethod::kFromBehind),
-        lighting(surfaces, shadows, files, view_options.columns(), view_options.rows()),
+        lighting(surfaces, shadows, times, files, view_options.columns(), view_options.rows()),
         resolve(files, "shaders/full_screen.vert.glsl", "shaders/resolve.frag.glsl"),
         radiance(gl::Format::kRgba32f, with.width, with.height) {
     if (with.tile > 1) interleaved.emplace(files, with, all.bounds.radius());
   }
 
-  /// The radiance of one sample of all pixels.
-  void draw(const Camera& camera, Vec2 offset, std::span<const std::vector<LightGroup>> groups,
+  /// The lights of each pixel of a tile in sample number `n`.
+  std::vector<std::vector<LightGroup>> groups(const VirtualLights& lights,
+                                              std::span<const float> bounds, std::size_t n) const {
+    return groups_of_tile(lights, bounds, world.coordinate_scale(), options.tile, n);
+  }
+
+  /// The radiance of sample number `n` of all pixels.
+  void draw(const Camera& camera, std::span<const std::vector<LightGroup>> groups, std::size_t n,
             const std::function<bool()>& group_done) {
     ViewOptions of_share = view_options;
-    of_share.offset = offset;
+    of_share.offset = place_in_pixel(n);
     for (int y = 0; y < options.tile; ++y) {
       for (int x = 0; x < options.tile; ++x) {
         of_share.first = {x, y};
         lighting.draw(make_view(camera, of_share),
                       groups[static_cast<std::size_t>(y * options.tile + x)], group_done);
-        if (interleaved) interleaved->interleaving.take(lighting.irradiance(), x, y);
+        if (!interleaved) continue;
+        times.begin(Stage::kFilter);
+        interleaved->interleaving.take(lighting.irradiance(), x, y);
+        times.end();
       }
     }
     if (!interleaved) {
@@ -121,18 +131,25 @@ struct Rasteriser::State {
       return;
     }
     ViewOptions whole = view_options;
-    whole.offset = offset;
+    whole.offset = of_share.offset;
     whole.step = 1;
+    times.begin(Stage::kSurfaces);
     surfaces.draw(make_view(camera, whole), interleaved->g_buffer);
-    draw_radiance(interleaved->g_buffer, interleaved->interleaving.filter(interleaved->g_buffer));
+    times.end();
+    times.begin(Stage::kFilter);
+    const Target& irradiance = interleaved->interleaving.filter(interleaved->g_buffer);
+    times.end();
+    draw_radiance(interleaved->g_buffer, irradiance);
   }
 
   void draw_radiance(const GBuffer& g_buffer, const Target& irradiance) {
+    times.begin(Stage::kResolve);
     resolve.set("u_reflectances", 0, g_buffer.reflectances);
     resolve.set("u_emissions", 1, g_buffer.emissions);
     resolve.set("u_irradiance", 2, irradiance.texture);
     radiance.framebuffer.bind();
     gl::draw_full_screen(no_vertices);
+    times.end();
     gl::check("drawing the radiance");
   }
 };
@@ -158,10 +175,10 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
   for (int sample = 0; sample < options.samples && !(sample > 0 && stop.load()); ++sample) {
     const std::size_t n =
         pass * static_cast<std::size_t>(options.samples) + static_cast<std::size_t>(sample);
-    const auto groups = groups_of_tile(lights, bounds, s.world.coordinate_scale(), options.tile, n);
+    const auto groups = s.groups(lights, bounds, n);
     std::size_t steps = 0, step = 0;
     for (const auto& of_pixel : groups) steps += of_pixel.size();
-    s.draw(camera, place_in_pixel(n), groups, [&] {
+    s.draw(camera, groups, n, [&] {
       const std::size_t done = image.pixels.size() *
                                (static_cast<std::size_t>(sample) * steps + ++step) /
                                (static_cast<std::size_t>(options.samples) * steps);
@@ -169,12 +186,24 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
       return !stop.load();
     });
     const std::vector<float> rgba = s.radiance.framebuffer.read<float>();
+    s.times.collect();
     const float share = 1.0f / static_cast<float>(options.samples);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
       image.pixels[i] += share * Rgb(rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]);
     }
   }
   return image;
+}
+
+void Rasteriser::draw_frame(const Camera& camera, const VirtualLights& lights,
+                            std::span<const float> bounds, std::size_t sample) {
+  state_->times.collect();
+  state_->draw(camera, state_->groups(lights, bounds, sample), sample, [] { return true; });
+}
+
+std::map<std::string, double> Rasteriser::seconds_of_stages() {
+  state_->times.collect();
+  return state_->times.seconds();
 }
 
 }  // namespace lantern

@@ -13,8 +13,10 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
+#include <string>
 
 namespace lantern {
 
@@ -39,6 +41,13 @@ class Rasteriser {
   Image draw(const Camera& camera, const VirtualLights& lights, std::span<const float> bounds,
              std::size_t pass, const StopFlag& stop,
              const std::function<void(std::size_t)>& pixels_done = {});
+
+  /// One sample of each pixel, number `sample` of all, that stays on the GPU: what a viewer shows.
+  void draw_frame(const Camera& camera, const VirtualLights& lights, std::span<const float> bounds,
+                  std::size_t sample);
+
+  /// Of the GPU for all that was drawn by now, by stage; see StageTimes::seconds().
+  std::map<std::string, double> seconds_of_stages();
 
  private:
   struct State;

@@ -117,7 +117,7 @@ void StencilShadows::take(std::size_t light, int reference, const View& view) co
 }
 
 void StencilShadows::draw(std::span<const LightPoint> lights, const View& view,
-                          const gl::Framebuffer& framebuffer) {
+                          const gl::Framebuffer& framebuffer, StageTimes& times) {
   assert(lights.size() <= kLightsInGroup);
   const Vec3 eye = view.eye;
   choose_walls(eye);
@@ -142,6 +142,7 @@ void StencilShadows::draw(std::span<const LightPoint> lights, const View& view,
   }
   indices_.write(std::span<const std::uint32_t>(indices));
 
+  times.begin(Stage::kVolumes);
   framebuffer.bind();
   reset_draw_state();
   const float none[4] = {};
@@ -176,6 +177,7 @@ void StencilShadows::draw(std::span<const LightPoint> lights, const View& view,
     take(i, (kStencilValues - around_eye) % kStencilValues, view);
   }
   reset_draw_state();
+  times.end();
   gl::check("drawing shadow volumes");
 }
 

@@ -6,6 +6,7 @@
 #include "lantern/gl/objects.h"
 #include "lantern/gl/program.h"
 #include "lantern/raster/edge_list.h"
+#include "lantern/raster/stage_times.h"
 #include "lantern/raster/surfaces.h"
 #include "lantern/raster/view.h"
 
@@ -26,9 +27,9 @@ class StencilShadows {
 
   /// Bit i of `mask` (RGBA8, the lowest byte in red): whether lights[i], of 32 at most, is seen.
   /// `framebuffer` draws into it with the depth and stencil of a G-buffer that was drawn with the
-  /// same view; the stencil must be 0, and is left so.
+  /// same view; the stencil must be 0, and is left so. Drawing alone is timed.
   void draw(std::span<const LightPoint> lights, const View& view,
-            const gl::Framebuffer& framebuffer);
+            const gl::Framebuffer& framebuffer, StageTimes& times);
 
  private:
   struct Prepared {
