@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
   unshadowed.set_block("Lights", 0);
   shade.set_block("Lights", 0);
   const Surfaces surfaces(scene, world, files);
-  StencilShadows shadows(world, files, VolumeMethod::kFromEye);
+  StencilShadows shadows(world, files, VolumeMethod::kExact);
   StageTimes times;
   GBuffer g_buffer(kWidth, kHeight);
   gl::Texture mask(gl::Format::kRgba8, kWidth, kHeight);

@@ -56,6 +56,8 @@ const std::vector<SpecialOption>& special_options() {
       {"--no-ambient", {Method::kRadiosityProgressive, Method::kRadiosityGpu}},
       {"--shadows", {Method::kInstantRadiosity}},
       {"--tile", {Method::kInstantRadiosity}},
+      {"--volumes", {Method::kInstantRadiosity}},
+      {"--show-volumes", {Method::kInstantRadiosity}},
       {"--gl-device", {Method::kInstantRadiosity}},
   };
   return options;

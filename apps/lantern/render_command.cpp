@@ -34,6 +34,8 @@ struct Arguments {
   std::string backend = "cpu";
   std::string shadows = "stencil";
   int tile = 4;
+  std::string volumes = "exact";
+  std::optional<std::size_t> show_volumes;
   int gl_device = -1;
   CameraArguments camera;
   std::optional<float> bound;
@@ -91,6 +93,10 @@ void add_instant_radiosity(const Arguments& arguments, RenderOptions& options) {
   options.shadow_rays = arguments.single_rays ? ShadowRays::kSingle : ShadowRays::kPackets;
   options.backend = arguments.backend == "gl" ? Backend::kGl : Backend::kCpu;
   if (arguments.shadows == "interleaved") options.tile = arguments.tile;
+  options.volumes = arguments.volumes == "z-pass"   ? VolumeMethod::kZPass
+                    : arguments.volumes == "z-fail" ? VolumeMethod::kZFail
+                                                    : VolumeMethod::kExact;
+  options.show_volumes = arguments.show_volumes;
   if (arguments.gl_device >= 0) options.gl_device = arguments.gl_device;
 }
 
@@ -154,6 +160,8 @@ void add_instant_radiosity(const Arguments& arguments, const RenderOptions& opti
                    {"backend", arguments.backend}});
   if (options.backend == Backend::kGl) metadata["shadows"] = arguments.shadows;
   if (options.tile > 1) metadata["tile"] = std::to_string(options.tile);
+  if (options.volumes != VolumeMethod::kExact) metadata["volumes"] = arguments.volumes;
+  if (options.show_volumes) metadata["show-volumes"] = std::to_string(*options.show_volumes);
   if (!arguments.lights_from.empty()) metadata["lights-from"] = arguments.lights_from;
 }
 
@@ -285,8 +293,9 @@ void check_backend(const CLI::App& command, const Arguments& arguments) {
   if (gl && method_of(arguments.method) != Method::kInstantRadiosity) {
     throw UsageError(fmt::format("--backend gl means nothing to --method {}", arguments.method));
   }
-  const std::vector<const char*> of_other = gl ? std::vector{"--compensate", "--single-rays"}
-                                               : std::vector{"--shadows", "--tile", "--gl-device"};
+  const std::vector<const char*> of_other =
+      gl ? std::vector{"--compensate", "--single-rays"}
+         : std::vector{"--shadows", "--tile", "--volumes", "--show-volumes", "--gl-device"};
   if (arguments.shadows != "interleaved" && command.count("--tile") > 0) {
     throw UsageError("--tile takes --shadows interleaved");
   }
@@ -378,6 +387,13 @@ void add_render(CLI::App& app) {
   command->add_option("--tile", a.tile, "Pixels a side that share the lights, if interleaved")
       ->check(CLI::IsMember({2, 4, 8}))
       ->capture_default_str();
+  command
+      ->add_option("--volumes", a.volumes,
+                   "How shadow volumes are counted: exact; z-pass, z-fail: the classics, for study")
+      ->check(CLI::IsMember({"exact", "z-pass", "z-fail"}))
+      ->capture_default_str();
+  command->add_option("--show-volumes", a.show_volumes,
+                      "Draw the shadow volumes of this light over the picture (0: the first)");
   command->add_option("--gl-device", a.gl_device, "A device of `lantern info --gl`, by its number")
       ->check(CLI::Range(0, 1'000'000));
   a.camera.add_to(*command);

@@ -230,6 +230,28 @@ TEST(Pictures, InterleavedSamplesTakeTurns) {
   EXPECT_LT(mean_difference(turned, all), 0.5 * mean_difference(once, all));
 }
 
+TEST(Pictures, ShowTheVolumesOfOneLight) {
+  const Scene scene = test::own_scene("cornell_box.scene");
+  RenderOptions options = small(8);
+  const Image plain = picture(scene, options, Backend::kGl);
+  options.show_volumes = 0;
+  for (const VolumeMethod method :
+       {VolumeMethod::kExact, VolumeMethod::kZPass, VolumeMethod::kZFail}) {
+    options.volumes = method;
+    const Image shown = picture(scene, options, Backend::kGl);
+    // Volumes stand in a part of the picture.
+    const double share = differing(shown, plain);
+    EXPECT_GT(share, 0.05);
+    EXPECT_LT(share, 0.9);
+  }
+  options.tile = 4;
+  const Image shared = picture(scene, options, Backend::kGl);
+  options.show_volumes.reset();
+  EXPECT_GT(differing(shared, picture(scene, options, Backend::kGl)), 0.05);
+  options.show_volumes = 1000;
+  EXPECT_THROW(picture(scene, options, Backend::kGl), Error);
+}
+
 TEST(Pictures, HolesAreRefusedByName) {
   Scene scene = test::own_scene("cornell_box.scene");
   scene.materials[0].name = "leaf";

@@ -11,7 +11,9 @@ inline RasterOptions raster_options(const RenderOptions& options) {
   return {.width = options.width,
           .height = options.height,
           .samples = options.samples,
-          .tile = options.tile};
+          .tile = options.tile,
+          .volumes = options.volumes,
+          .show_volumes = options.show_volumes};
 }
 
 }  // namespace lantern

@@ -13,6 +13,7 @@
 #include "lantern/radiosity/hemicube_rows.h"
 #include "lantern/radiosity/patches.h"
 #include "lantern/radiosity/solve.h"
+#include "lantern/raster/volume_method.h"
 #include "lantern/scene/scene.h"
 
 #include <cstddef>
@@ -82,7 +83,9 @@ struct RenderOptions {
   bool compensate = false;
   ShadowRays shadow_rays = ShadowRays::kPackets;
   Backend backend = Backend::kCpu;
-  int tile = 1;                  // GL: so many pixels a side share the lights
+  int tile = 1;                                 // GL: so many pixels a side share the lights
+  VolumeMethod volumes = VolumeMethod::kExact;  // GL
+  std::optional<std::size_t> show_volumes;      // GL: those of this light, over the picture
   std::optional<int> gl_device;  // of those that `lantern info --gl` names; none: the first usable
 
   PathTracing path;

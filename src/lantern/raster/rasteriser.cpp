@@ -9,9 +9,11 @@
 #include "lantern/raster/raster_lights.h"
 #include "lantern/raster/stencil_shadows.h"
 #include "lantern/raster/surfaces.h"
+#include "lantern/raster/volume_view.h"
 #include "lantern/sampling/kronecker.h"
 #include "lantern/scene/surface.h"
 
+#include <array>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -61,6 +63,23 @@ std::vector<std::vector<LightGroup>> groups_of_tile(const VirtualLights& lights,
   return groups;
 }
 
+/// The way that is asked for or, where depth clamp is missing, the other exact one.
+VolumeMethod method(VolumeMethod asked, const gl::Info& gl) {
+  return asked == VolumeMethod::kExact && !gl.has(gl::kDepthClamp) ? VolumeMethod::kZFail : asked;
+}
+
+/// Where light number `i` is.
+LightPoint point_of(const VirtualLights& lights, std::size_t i, float scale) {
+  if (i >= lights.size()) {
+    throw Error(fmt::format("there is no light {} to show the volumes of: the last is {}", i,
+                            lights.size() - 1));
+  }
+  const auto groups =
+      group_lights(subset(lights, std::array{static_cast<std::uint32_t>(i)}), {}, scale);
+  if (groups.empty()) throw Error(fmt::format("light {} is black and has no volumes", i));
+  return groups.front().points.front();
+}
+
 /// What a tile of several pixels takes.
 struct Interleaved {
   GBuffer g_buffer;  // of the whole picture
@@ -96,8 +115,7 @@ struct Rasteriser::State {
                      .radius = all.bounds.radius(),
                      .range = gl.has(gl::kClipControl) ? ClipRange::kFarIs0 : ClipRange::kFarIs1},
         surfaces(scene, all, files),
-        shadows(all, files,
-                gl.has(gl::kDepthClamp) ? VolumeMethod::kFromEye : VolumeMethod::kFromBehind),
+        shadows(all, files, method(with.volumes, gl)),
         lighting(surfaces, shadows, times, files, view_options.columns(), view_options.rows()),
         resolve(files, "shaders/full_screen.vert.glsl", "shaders/resolve.frag.glsl"),
         radiance(gl::Format::kRgba32f, with.width, with.height) {
@@ -108,6 +126,17 @@ struct Rasteriser::State {
   std::vector<std::vector<LightGroup>> groups(const VirtualLights& lights,
                                               std::span<const float> bounds, std::size_t n) const {
     return groups_of_tile(lights, bounds, world.coordinate_scale(), options.tile, n);
+  }
+
+  /// Of the whole picture.
+  View view_of_sample(const Camera& camera, std::size_t n) const {
+    ViewOptions whole = view_options;
+    whole.offset = place_in_pixel(n);
+    whole.step = 1;
+    return make_view(camera, whole);
+  }
+  const GBuffer& whole_g_buffer() const {
+    return interleaved ? interleaved->g_buffer : lighting.g_buffer();
   }
 
   /// The radiance of sample number `n` of all pixels.
@@ -130,11 +159,8 @@ struct Rasteriser::State {
       draw_radiance(lighting.g_buffer(), lighting.irradiance());
       return;
     }
-    ViewOptions whole = view_options;
-    whole.offset = of_share.offset;
-    whole.step = 1;
     times.begin(Stage::kSurfaces);
-    surfaces.draw(make_view(camera, whole), interleaved->g_buffer);
+    surfaces.draw(view_of_sample(camera, n), interleaved->g_buffer);
     times.end();
     times.begin(Stage::kFilter);
     const Target& irradiance = interleaved->interleaving.filter(interleaved->g_buffer);
@@ -171,6 +197,8 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
   State& s = *state_;
   const RasterOptions& options = s.options;
   Image image(options.width, options.height);
+  std::optional<VolumeView> volumes;
+  if (options.show_volumes) volumes.emplace(s.whole_g_buffer());
   std::size_t reported = 0;
   for (int sample = 0; sample < options.samples && !(sample > 0 && stop.load()); ++sample) {
     const std::size_t n =
@@ -187,11 +215,16 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
     });
     const std::vector<float> rgba = s.radiance.framebuffer.read<float>();
     s.times.collect();
+    if (volumes) {
+      volumes->add(s.shadows, point_of(lights, *options.show_volumes, s.world.coordinate_scale()),
+                   s.view_of_sample(camera, n));
+    }
     const float share = 1.0f / static_cast<float>(options.samples);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
       image.pixels[i] += share * Rgb(rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]);
     }
   }
+  if (volumes) volumes->blend_over(image);
   return image;
 }
 

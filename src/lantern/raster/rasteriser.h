@@ -8,6 +8,7 @@
 #include "lantern/gl/info.h"
 #include "lantern/image/image.h"
 #include "lantern/lights/virtual_lights.h"
+#include "lantern/raster/volume_method.h"
 #include "lantern/scene/scene.h"
 #include "lantern/scene/world.h"
 
@@ -15,6 +16,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -25,6 +27,8 @@ struct RasterOptions {
   int height = 512;
   int samples = 1;  // per pixel and pass
   int tile = 1;     // tile x tile pixels share the lights; 1: every sample against all of them
+  VolumeMethod volumes = VolumeMethod::kExact;
+  std::optional<std::size_t> show_volumes;  // those of this light, over the picture
 };
 
 class Rasteriser {
@@ -37,7 +41,8 @@ class Rasteriser {
 
   /// The picture of one pass. `bounds` on the geometry term: one for each light, or none. Ends
   /// early, with the lights that were done by then, once `stop` is set; calls `pixels_done` with
-  /// numbers that sum up to the pixels of the picture.
+  /// numbers that sum up to the pixels of the picture. Throws Error if the light whose volumes are
+  /// to be shown is not there.
   Image draw(const Camera& camera, const VirtualLights& lights, std::span<const float> bounds,
              std::size_t pass, const StopFlag& stop,
              const std::function<void(std::size_t)>& pixels_done = {});

@@ -71,6 +71,7 @@ StencilShadows::StencilShadows(const World& world, const gl::ShaderFiles& files,
     : world_(world),
       method_(method),
       volume_(files, "shaders/shadow_volume.vert.glsl", "shaders/nothing.frag.glsl"),
+      sides_(files, "shaders/shadow_volume.vert.glsl", "shaders/volume_sides.frag.glsl"),
       take_(files, "shaders/full_screen.vert.glsl", "shaders/constant.frag.glsl"),
       all_walls_(find_walls(world)),
       whole_(world),
@@ -93,16 +94,20 @@ StencilShadows::Prepared StencilShadows::prepare(const LightPoint& light, const 
   // Closer to a quad's plane than this the eye may be on its other side for GL.
   const float clear = 0x1p-20f * scale;
   const VolumeCount count =
-      method_ == VolumeMethod::kFromEye ? VolumeCount::kHalved : VolumeCount::kPlain;
+      method_ == VolumeMethod::kZFail ? VolumeCount::kPlain : VolumeCount::kHalved;
   constexpr std::uint64_t kAttempts = 8;
   Prepared result;
   for (std::uint64_t attempt = 0; attempt < kAttempts; ++attempt) {
     result.light = attempt == 0 ? light : nudged(light, scale, attempt);
-    // From behind one meets also what is outside the walls.
-    const bool inside = method_ == VolumeMethod::kFromEye && is_inside(walls_, result.light);
+    // From behind one meets also what is outside the walls; the classics know no walls.
+    const bool inside = method_ == VolumeMethod::kExact && is_inside(walls_, result.light);
     result.list = inside ? &*inside_ : &whole_;
     result.volumes = result.list->volumes(result.light, eye, count);
     if (is_clear_of(*result.list, result.volumes, result.light, eye, clear)) break;
+  }
+  if (method_ == VolumeMethod::kZPass) {
+    result.volumes.eye_count = 0;
+    result.volumes.dark = false;
   }
   return result;
 }
@@ -136,7 +141,7 @@ void StencilShadows::draw(std::span<const LightPoint> lights, const View& view,
     of_light.quads = range([&] {
       for (const VolumeEdge& edge : p.volumes.edges) append_quad(edge, indices);
     });
-    if (method_ == VolumeMethod::kFromEye) continue;
+    if (method_ != VolumeMethod::kZFail) continue;
     of_light.outward_caps = range([&] { append_caps(*p.list, p.light, true, indices); });
     of_light.inward_caps = range([&] { append_caps(*p.list, p.light, false, indices); });
   }
@@ -153,7 +158,7 @@ void StencilShadows::draw(std::span<const LightPoint> lights, const View& view,
     if (prepared[i].volumes.dark) continue;
     volume_.set("u_light", prepared[i].light);
     array_.bind();
-    if (method_ == VolumeMethod::kFromBehind) {
+    if (method_ == VolumeMethod::kZFail) {
       DrawState state = {
           .depth = DepthUse::kTest, .stencil = StencilUse::kCountHidden, .colour = false};
       apply(state, view);
@@ -168,7 +173,7 @@ void StencilShadows::draw(std::span<const LightPoint> lights, const View& view,
     apply({.depth = DepthUse::kTest,
            .stencil = StencilUse::kCountPassing,
            .colour = false,
-           .depth_clamp = true},
+           .depth_clamp = method_ == VolumeMethod::kExact},
           view);
     draw_indices(pieces[i].quads);
     // The count starts at 0, not at that of the eye: it is complete where it is the negative.
@@ -179,6 +184,28 @@ void StencilShadows::draw(std::span<const LightPoint> lights, const View& view,
   reset_draw_state();
   times.end();
   gl::check("drawing shadow volumes");
+}
+
+void StencilShadows::draw_sides(const LightPoint& light, const View& view,
+                                const gl::Framebuffer& framebuffer) {
+  choose_walls(view.eye);
+  const Prepared prepared = prepare(light, view.eye);
+  std::vector<std::uint32_t> indices;
+  for (const VolumeEdge& edge : prepared.volumes.edges) append_quad(edge, indices);
+  indices_.write(std::span<const std::uint32_t>(indices));
+  framebuffer.bind();
+  reset_draw_state();
+  const float none[4] = {};
+  glClearBufferfv(GL_COLOR, 0, none);
+  apply({.depth = DepthUse::kTest, .add = true, .depth_clamp = method_ == VolumeMethod::kExact},
+        view);
+  sides_.set("u_eye", view.eye);
+  sides_.set("u_clip", view.clip);
+  sides_.set("u_light", prepared.light);
+  array_.bind();
+  draw_indices({0, indices.size()});
+  reset_draw_state();
+  gl::check("drawing the sides of shadow volumes");
 }
 
 }  // namespace lantern

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which of up to 32 lights each pixel sees, as the bits of a mask, by shadow volumes in the stencil
-// buffer. [Crow 1977; Heidmann 1991; from behind: Everitt & Kilgard 2002]
+// buffer, counted by one of the methods of volume_method.h.
 #pragma once
 
 #include "lantern/gl/objects.h"
@@ -9,17 +9,13 @@
 #include "lantern/raster/stage_times.h"
 #include "lantern/raster/surfaces.h"
 #include "lantern/raster/view.h"
+#include "lantern/raster/volume_method.h"
 
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace lantern {
-
-enum class VolumeMethod {
-  kFromEye,     // z-pass with depth clamp, counting on from the count of the eye: exact
-  kFromBehind,  // z-fail with caps: exact too, without depth clamp, and slower
-};
 
 class StencilShadows {
  public:
@@ -30,6 +26,10 @@ class StencilShadows {
   /// same view; the stencil must be 0, and is left so. Drawing alone is timed.
   void draw(std::span<const LightPoint> lights, const View& view,
             const gl::Framebuffer& framebuffer, StageTimes& times);
+
+  /// How many sides of the volumes of one light each pixel has before its surface: fronts in red,
+  /// backs in green of an RGBA8 framebuffer with a depth as above.
+  void draw_sides(const LightPoint& light, const View& view, const gl::Framebuffer& framebuffer);
 
  private:
   struct Prepared {
@@ -44,7 +44,7 @@ class StencilShadows {
 
   const World& world_;
   VolumeMethod method_;
-  gl::Program volume_, take_;
+  gl::Program volume_, sides_, take_;
   gl::VertexArray no_vertices_;
   std::vector<Vec4> all_walls_, walls_;
   EdgeList whole_;                  // of all triangles
