@@ -125,7 +125,7 @@ VirtualLights furnace_lights(const Stage& stage, const Furnace& f, float p, std:
   options.points = {f.sampler, 0};
   VirtualLights lights = walk(stage.scene, stage.world, *stage.tracer, stage.emitters, options);
   if (f.pool == 1) return lights;
-  return resample(lights, lights.size() / f.pool, pass);
+  return resample(lights, flux_weights(lights), lights.size() / f.pool, pass);
 }
 
 TEST_P(FurnaceTest, IrradianceOfEveryPointIsThatOfTheGeometricSeries) {

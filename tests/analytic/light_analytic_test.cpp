@@ -785,7 +785,7 @@ TEST(Resample, KeepsTheFluxOfEqualLightsExactly) {
   for (Rgb& flux : pool.flux) flux = Rgb(2.0f, 1.0f, 0.5f);
   for (const std::size_t count : {1, 7, 64, 500}) {
     for (const std::uint64_t pass : {0, 1, 77}) {
-      const VirtualLights few = resample(pool, count, pass);
+      const VirtualLights few = resample(pool, flux_weights(pool), count, pass);
       EXPECT_LE(few.size(), count);
       EXPECT_GT(few.size(), count / 3);
       EXPECT_NEAR(total_flux(few), total_flux(pool), kRounding * total_flux(pool));
@@ -808,7 +808,7 @@ TEST(Resample, IsUnbiasedOverPasses) {
   for (std::size_t i = 0; i < pool.size(); ++i) place[{pool.path[i], pool.bounce[i]}] = i;
   std::vector<glm::dvec3> sums(pool.size(), glm::dvec3(0.0));
   for (std::uint64_t pass = 0; pass < kPasses; ++pass) {
-    const VirtualLights few = resample(pool, kCount, pass);
+    const VirtualLights few = resample(pool, flux_weights(pool), kCount, pass);
     ASSERT_LE(few.size(), kCount);
     for (std::size_t i = 0; i < few.size(); ++i) {
       const std::size_t from = place.at({few.path[i], few.bounce[i]});
@@ -844,7 +844,7 @@ TEST(Resample, SpreadsOverPlaces) {
   }
   for (const std::uint64_t pass : {0, 1, 77}) {
     std::map<std::tuple<bool, bool, bool>, int> met;
-    for (const Vec3& p : resample(pool, 8, pass).position) {
+    for (const Vec3& p : resample(pool, flux_weights(pool), 8, pass).position) {
       ++met[{p.x > 5.0f, p.y > 5.0f, p.z > 5.0f}];
     }
     EXPECT_THAT(met, SizeIs(8));
@@ -852,7 +852,7 @@ TEST(Resample, SpreadsOverPlaces) {
 }
 
 TEST(Resample, TakesPoolsOfNoneOneAndThoseAtInfinity) {
-  EXPECT_EQ(resample(VirtualLights{}, 4, 5).size(), 0u);
+  EXPECT_EQ(resample(VirtualLights{}, {}, 4, 5).size(), 0u);
 
   VirtualLights pool;
   const auto add = [&](LightKind kind, const Vec3& position, const Vec3& normal) {
@@ -866,7 +866,7 @@ TEST(Resample, TakesPoolsOfNoneOneAndThoseAtInfinity) {
   };
   add(LightKind::kSpot, Vec3(1, 2, 3), Vec3(0, 0, -1));
   for (const std::size_t count : {1, 5}) {
-    const VirtualLights one = resample(pool, count, 4);
+    const VirtualLights one = resample(pool, flux_weights(pool), count, 4);
     ASSERT_EQ(one.size(), 1u);
     EXPECT_EQ(one.kind[0], LightKind::kSpot);
     EXPECT_EQ(one.cone[0], Vec2(0.9f, 0.5f));
@@ -879,7 +879,7 @@ TEST(Resample, TakesPoolsOfNoneOneAndThoseAtInfinity) {
         glm::normalize(Vec3(static_cast<float>(i) - 31.0f, -20.0f, 5.0f)));
   }
   for (const std::uint64_t pass : {0, 5, 9}) {
-    const VirtualLights few = resample(pool, 16, pass);
+    const VirtualLights few = resample(pool, flux_weights(pool), 16, pass);
     EXPECT_LE(few.size(), 16u);
     EXPECT_GE(few.size(), 8u);
     double red = 0.0;

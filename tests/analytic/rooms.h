@@ -144,13 +144,7 @@ inline ShadingPacket packet_of(std::span<const Receiver> receivers) {
   ShadingPacket packet{};
   for (std::size_t i = 0; i < receivers.size(); ++i) {
     const auto& [position, normal] = receivers[i];
-    packet.x[i] = position.x;
-    packet.y[i] = position.y;
-    packet.z[i] = position.z;
-    packet.shading_x[i] = packet.geometric_x[i] = normal.x;
-    packet.shading_y[i] = packet.geometric_y[i] = normal.y;
-    packet.shading_z[i] = packet.geometric_z[i] = normal.z;
-    packet.active.lane[i] = -1;
+    packet.set(i, position, normal, normal);
   }
   return packet;
 }

@@ -149,19 +149,9 @@ class TileGatherer {
   void gather_at(std::span<const ShadingPoint> points, Image& image) {
     if (points.empty()) return;
     assert(points.size() <= kPacket);
-    ShadingPacket packet;
-    for (std::size_t i = 0; i < kPacket; ++i) {
-      const ShadingPoint& p = points[std::min(i, points.size() - 1)];
-      packet.x[i] = p.position.x;
-      packet.y[i] = p.position.y;
-      packet.z[i] = p.position.z;
-      packet.shading_x[i] = p.shading_normal.x;
-      packet.shading_y[i] = p.shading_normal.y;
-      packet.shading_z[i] = p.shading_normal.z;
-      packet.geometric_x[i] = p.geometric_normal.x;
-      packet.geometric_y[i] = p.geometric_normal.y;
-      packet.geometric_z[i] = p.geometric_normal.z;
-      packet.active.lane[i] = i < points.size() ? -1 : 0;
+    ShadingPacket packet{};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      packet.set(i, points[i].position, points[i].shading_normal, points[i].geometric_normal);
     }
     IrradiancePacket irradiance;
     counts_.shadow_rays += gather_irradiance(lights_, packet, in_.tracer, bound_.reflected(),

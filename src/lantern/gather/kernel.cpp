@@ -23,41 +23,46 @@ GatherKernel* widest_kernel() {
 
 GatherLights::GatherLights(const VirtualLights& lights, float coordinate_scale,
                            std::span<const float> bounds) {
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    add(lights, i, coordinate_scale, bounds.empty() ? 0.0f : bounds[i]);
+  }
+}
+
+void GatherLights::add(const VirtualLights& lights, std::size_t i, float coordinate_scale,
+                       float own_bound) {
   const auto put = [](float* target, const Vec3& v) {
     target[0] = v.x;
     target[1] = v.y;
     target[2] = v.z;
   };
-  for (std::size_t i = 0; i < lights.size(); ++i) {
-    const Rgb flux = lights.flux[i];
-    if (is_black(flux)) continue;
-    const Vec3 normal = lights.normal[i];
-    switch (lights.kind[i]) {
-      case LightKind::kSurface: {
-        Surface& light = surface.emplace_back();
-        put(light.position, off_surface(lights.position[i], normal, coordinate_scale));
-        put(light.normal, normal);
-        put(light.flux, flux * kInvPi);
-        light.bound = bounds.empty() ? 0.0f : bounds[i];
-        break;
-      }
-      case LightKind::kPoint:
-      case LightKind::kSpot: {
-        const bool spot = lights.kind[i] == LightKind::kSpot;
-        Point& light = point.emplace_back();
-        put(light.position, lights.position[i]);
-        put(light.axis, normal);
-        put(light.intensity, flux / (spot ? spot_solid_angle(lights.cone[i]) : 4.0f * kPi));
-        light.cone[0] = spot ? lights.cone[i].x : -2.0f;
-        light.cone[1] = spot ? lights.cone[i].y : -3.0f;
-        break;
-      }
-      case LightKind::kDirectional: {
-        Directional& light = directional.emplace_back();
-        put(light.direction, normal);
-        put(light.irradiance, flux);
-        break;
-      }
+  const Rgb flux = lights.flux[i];
+  if (is_black(flux)) return;
+  const Vec3 normal = lights.normal[i];
+  switch (lights.kind[i]) {
+    case LightKind::kSurface: {
+      Surface& light = surface.emplace_back();
+      put(light.position, off_surface(lights.position[i], normal, coordinate_scale));
+      put(light.normal, normal);
+      put(light.flux, flux * kInvPi);
+      light.bound = own_bound;
+      break;
+    }
+    case LightKind::kPoint:
+    case LightKind::kSpot: {
+      const bool spot = lights.kind[i] == LightKind::kSpot;
+      Point& light = point.emplace_back();
+      put(light.position, lights.position[i]);
+      put(light.axis, normal);
+      put(light.intensity, flux / (spot ? spot_solid_angle(lights.cone[i]) : 4.0f * kPi));
+      light.cone[0] = spot ? lights.cone[i].x : -2.0f;
+      light.cone[1] = spot ? lights.cone[i].y : -3.0f;
+      break;
+    }
+    case LightKind::kDirectional: {
+      Directional& light = directional.emplace_back();
+      put(light.direction, normal);
+      put(light.irradiance, flux);
+      break;
     }
   }
 }

@@ -29,9 +29,13 @@ struct GatherLights {
   std::vector<Point> point;
   std::vector<Directional> directional;
 
+  GatherLights() = default;
   /// `bounds`: one for each light, or empty for none of their own.
   GatherLights(const VirtualLights& lights, float coordinate_scale,
                std::span<const float> bounds = {});
+  /// Adds light i; `own_bound` as above.
+  void add(const VirtualLights& lights, std::size_t i, float coordinate_scale,
+           float own_bound = 0.0f);
   std::size_t size() const { return surface.size() + point.size() + directional.size(); }
 };
 
@@ -41,6 +45,20 @@ struct alignas(64) ShadingPacket {
   float shading_x[kPacket], shading_y[kPacket], shading_z[kPacket];
   float geometric_x[kPacket], geometric_y[kPacket], geometric_z[kPacket];
   LaneMask active;
+
+  /// Fills lane i and makes it active.
+  void set(std::size_t i, const Vec3& position, const Vec3& shading, const Vec3& geometric) {
+    x[i] = position.x;
+    y[i] = position.y;
+    z[i] = position.z;
+    shading_x[i] = shading.x;
+    shading_y[i] = shading.y;
+    shading_z[i] = shading.z;
+    geometric_x[i] = geometric.x;
+    geometric_y[i] = geometric.y;
+    geometric_z[i] = geometric.z;
+    active.lane[i] = -1;
+  }
 };
 
 /// Irradiance in W/m² by channel.

@@ -5,6 +5,7 @@
 #include "lantern/sampling/halton.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -75,22 +76,26 @@ std::vector<std::uint64_t> curve_positions(const VirtualLights& lights) {
 
 }  // namespace
 
-VirtualLights resample(const VirtualLights& pool, std::size_t count, std::uint64_t pass,
-                       double directional_area) {
+std::vector<double> flux_weights(const VirtualLights& pool, double directional_area) {
   const auto flux = [&](std::size_t i) {
     const bool from_infinity = pool.kind[i] == LightKind::kDirectional;
     return glm::dvec3(pool.flux[i]) * (from_infinity ? directional_area : 1.0);
   };
   glm::dvec3 total(0.0);
   for (std::size_t i = 0; i < pool.size(); ++i) total += flux(i);
-  const auto weight = [&](std::size_t i) {
+  std::vector<double> weights(pool.size(), 0.0);
+  for (std::size_t i = 0; i < pool.size(); ++i) {
     const glm::dvec3 f = flux(i);
-    double largest = 0.0;
     for (int c = 0; c < 3; ++c) {
-      if (total[c] > 0.0) largest = std::max(largest, f[c] / total[c]);
+      if (total[c] > 0.0) weights[i] = std::max(weights[i], f[c] / total[c]);
     }
-    return largest;
-  };
+  }
+  return weights;
+}
+
+VirtualLights resample(const VirtualLights& pool, std::span<const double> weights,
+                       std::size_t count, std::uint64_t pass) {
+  assert(weights.size() == pool.size());
   const std::vector<std::uint64_t> keys = curve_positions(pool);
   std::vector<std::uint32_t> order(pool.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -98,7 +103,7 @@ VirtualLights resample(const VirtualLights& pool, std::size_t count, std::uint64
     return keys[a] != keys[b] ? keys[a] < keys[b] : a < b;
   });
   double all = 0.0;
-  for (const std::uint32_t i : order) all += weight(i);
+  for (const std::uint32_t i : order) all += weights[i];
 
   VirtualLights lights;
   lights.paths = pool.paths;
@@ -113,7 +118,7 @@ VirtualLights resample(const VirtualLights& pool, std::size_t count, std::uint64
   double reached = 0.0;
   std::size_t next = 0;
   for (const std::uint32_t i : order) {
-    const double w = weight(i);
+    const double w = weights[i];
     reached += w;
     int times = 0;
     for (; next < count && choice(next) < reached; ++next) ++times;

@@ -2,6 +2,7 @@
 #include "lantern/pipeline/render_instant_radiosity.h"
 
 #include "lantern/core/error.h"
+#include "lantern/gather/importance.h"
 #include "lantern/lights/emitters.h"
 #include "lantern/lights/resample.h"
 #include "lantern/pipeline/gl_gather.h"
@@ -10,7 +11,10 @@
 #include "lantern/trace/embree.h"
 
 #include <algorithm>
+#include <functional>
+#include <memory>
 #include <numbers>
+#include <numeric>
 
 namespace lantern {
 namespace {
@@ -47,9 +51,34 @@ WalkOptions walk_options(const Scene& scene, const World& world, const LightOpti
   return walk;
 }
 
+/// Weighs the lights of a pool for a pass.
+using Weigh = std::function<std::vector<double>(const VirtualLights& pool, std::size_t pass)>;
+
+/// What they shine, for a picture that is not known.
+std::vector<double> weigh_by_flux(const World& world, const VirtualLights& pool) {
+  const double radius = static_cast<double>(world.bounds.radius());
+  return flux_weights(pool, std::numbers::pi * radius * radius);
+}
+
+/// What they matter to the picture. As that is only seen at some points of it, every light keeps a
+/// part of the weight that its flux gives it.
+std::vector<double> weigh_by_importance(const GatherInput& input, const VirtualLights& pool,
+                                        const GatherOptions& options) {
+  constexpr double kByFlux = 0.25;
+  std::vector<double> weights = weigh_by_flux(input.world, pool);
+  const std::vector<double> seen = importance(input, pool, options);
+  const double flux = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const double all = std::accumulate(seen.begin(), seen.end(), 0.0);
+  if (!(all > 0.0)) return weights;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    weights[i] = kByFlux * weights[i] / flux + (1.0 - kByFlux) * seen[i] / all;
+  }
+  return weights;
+}
+
 /// The lights of one pass: all that the walk leaves, or the pick of a larger walk.
 VirtualLights lights_of_pass(const WalkInput& in, WalkOptions walk_with, std::size_t pool,
-                             std::size_t pass) {
+                             std::size_t pass, const Weigh& weigh) {
   walk_with.pass = pass;
   if (pool <= 1) return walk(in.scene, in.world, in.tracer, in.emitters, walk_with);
   std::size_t count = 0;
@@ -57,11 +86,9 @@ VirtualLights lights_of_pass(const WalkInput& in, WalkOptions walk_with, std::si
     count += n;
   }
   const std::size_t paths = walk_with.paths;
-  const double radius = static_cast<double>(in.world.bounds.radius());
-  const double disc = std::numbers::pi * radius * radius;
   walk_with.paths *= pool;
-  VirtualLights lights =
-      resample(walk(in.scene, in.world, in.tracer, in.emitters, walk_with), count, pass, disc);
+  const VirtualLights walked = walk(in.scene, in.world, in.tracer, in.emitters, walk_with);
+  VirtualLights lights = resample(walked, weigh(walked, pass), count, pass);
   lights.paths = paths;
   return lights;
 }
@@ -70,14 +97,7 @@ using PixelsDone = std::function<void(std::size_t)>;
 using GatherPass =
     std::function<Image(const VirtualLights& lights, std::size_t pass, const PixelsDone& done)>;
 
-GatherPass make_gather(const RenderJob& job, const Emitters& emitters, GatherCounts& rays) {
-  const RenderOptions& options = job.options;
-  if (options.backend == Backend::kGl) {
-    const auto by_gl = std::make_shared<GlGather>(job, emitters);
-    return [by_gl](const VirtualLights& lights, std::size_t pass, const PixelsDone& done) {
-      return by_gl->gather(lights, pass, done);
-    };
-  }
+GatherOptions gather_options(const RenderOptions& options) {
   GatherOptions gather_with;
   gather_with.width = options.width;
   gather_with.height = options.height;
@@ -86,10 +106,19 @@ GatherPass make_gather(const RenderJob& job, const Emitters& emitters, GatherCou
   gather_with.compensate = options.compensate;
   gather_with.seed = options.lights.points.seed;
   gather_with.shadow_rays = options.shadow_rays;
-  return [&, gather_with](const VirtualLights& lights, std::size_t pass,
-                          const PixelsDone& done) mutable {
+  return gather_with;
+}
+
+GatherPass make_gather(const RenderJob& job, const GatherInput& input, GatherCounts& rays) {
+  if (job.options.backend == Backend::kGl) {
+    const auto by_gl = std::make_shared<GlGather>(job, input.emitters);
+    return [by_gl](const VirtualLights& lights, std::size_t pass, const PixelsDone& done) {
+      return by_gl->gather(lights, pass, done);
+    };
+  }
+  return [&, gather_with = gather_options(job.options)](
+             const VirtualLights& lights, std::size_t pass, const PixelsDone& done) mutable {
     gather_with.pass = pass;
-    const GatherInput input{job.scene, job.world, job.tracer, emitters, job.camera};
     return gather(input, lights, gather_with, rays, job.stop, done);
   };
 }
@@ -105,7 +134,13 @@ Rendered render_instant_radiosity(const RenderJob& job) {
   const WalkInput walk_in{job.scene, job.world, job.tracer, emitters};
   const WalkOptions walk_with = walk_options(job.scene, job.world, options.lights, result.warnings);
   GatherCounts rays;
-  const GatherPass gather_pass = make_gather(job, emitters, rays);
+  const GatherInput input{job.scene, job.world, job.tracer, emitters, job.camera};
+  const GatherPass gather_pass = make_gather(job, input, rays);
+  const Weigh weigh = [&, gather_with = gather_options(options)](const VirtualLights& pool,
+                                                                 std::size_t pass) mutable {
+    gather_with.pass = pass;
+    return weigh_by_importance(input, pool, gather_with);
+  };
   statistics.seconds_prepare = job.watch.seconds();
 
   Passes passes(job);
@@ -113,7 +148,7 @@ Rendered render_instant_radiosity(const RenderJob& job) {
     const Stopwatch lights_watch;
     VirtualLights walked;
     if (!options.given_lights) {
-      walked = lights_of_pass(walk_in, walk_with, options.lights.pool, passes.number());
+      walked = lights_of_pass(walk_in, walk_with, options.lights.pool, passes.number(), weigh);
     }
     const VirtualLights& lights = options.given_lights ? *options.given_lights : walked;
     statistics.seconds_lights += lights_watch.seconds();
@@ -141,8 +176,10 @@ VirtualLights make_lights(const Scene& scene, const LightOptions& options,
   const std::unique_ptr<Tracer> tracer = make_embree_tracer(scene, world);
   const Emitters emitters(scene, world);
   require_light(!emitters.empty());
-  return lights_of_pass({scene, world, *tracer, emitters},
-                        walk_options(scene, world, options, warnings), options.pool, 0);
+  return lights_of_pass(
+      {scene, world, *tracer, emitters}, walk_options(scene, world, options, warnings),
+      options.pool, 0,
+      [&](const VirtualLights& pool, std::size_t) { return weigh_by_flux(world, pool); });
 }
 
 }  // namespace lantern
