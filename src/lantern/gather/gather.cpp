@@ -5,6 +5,7 @@
 #include "lantern/gather/term_bound.h"
 #include "lantern/sampling/kronecker.h"
 #include "lantern/sampling/warp.h"
+#include "lantern/scene/sky.h"
 #include "lantern/scene/surface.h"
 #include "lantern/trace/eye.h"
 
@@ -100,7 +101,7 @@ class TileGatherer {
       const Vec3 direction(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]);
       Rgb& pixel = image.pixels[pixels[i]];
       if (!hits[i]) {
-        pixel += share * background(direction);
+        pixel += share * sky_radiance(in_.scene, direction);
         continue;
       }
       const bool front = seen_from_front(hits[i], direction);
@@ -116,8 +117,6 @@ class TileGatherer {
   bool seen_from_front(const Hit& hit, const Vec3& direction) const {
     return glm::dot(in_.world.area_vector(hit.triangle), direction) < 0.0f;
   }
-
-  Rgb background(const Vec3& direction) const { return in_.emitters.sky_radiance(-direction); }
 
   ShadingPoint shading_point(const SurfacePoint& surface, bool front, const Vec3& shading_normal,
                              const Rgb& throughput, std::uint32_t pixel, std::uint64_t sample,

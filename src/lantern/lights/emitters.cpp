@@ -2,6 +2,7 @@
 #include "lantern/lights/emitters.h"
 
 #include "lantern/sampling/warp.h"
+#include "lantern/scene/sky.h"
 #include "lantern/scene/surface.h"
 #include "lantern/scene/texture.h"
 
@@ -11,19 +12,6 @@
 
 namespace lantern {
 namespace {
-
-/// Lat-long map of the sky: u = 0 towards -z and growing over +x, v = 0 straight up.
-Vec2 to_lat_long(const Vec3& direction) {
-  const float u = std::atan2(direction.x, -direction.z) * (0.5f * kInvPi);
-  const float v = std::acos(std::clamp(direction.y, -1.0f, 1.0f)) * kInvPi;
-  return {u < 0.0f ? u + 1.0f : u, v};
-}
-
-Vec3 from_lat_long(const Vec2& uv) {
-  const float azimuth = 2.0f * kPi * uv.x, polar = kPi * uv.y;
-  const float s = std::sin(polar);
-  return {s * std::sin(azimuth), std::cos(polar), -s * std::cos(azimuth)};
-}
 
 /// The sky's luminance by the cells of its texture, weighted by their solid angle. A cell takes the
 /// mean of its corner look-ups, so that none which the filter reaches has no chance.
@@ -212,10 +200,9 @@ PathStart Emitters::start_at_sky(float probability, Vec2 place, Vec2 way) const 
   }
   const Distribution2D::Point chosen = sky_choice_.sample(place);
   const Vec3 towards_sky = from_lat_long(chosen.position);
-  const float sin_polar = std::sin(kPi * chosen.position.y);
-  const float pdf_solid_angle = chosen.pdf / (2.0f * kPi * kPi * std::max(sin_polar, 1e-6f));
-  return start_from_infinity(-towards_sky,
-                             sky_radiance(-towards_sky) / (pdf_solid_angle * probability), way);
+  const float pdf_solid_angle = chosen.pdf / lat_long_solid_angle(chosen.position);
+  return start_from_infinity(
+      -towards_sky, sky_radiance(scene_, towards_sky) / (pdf_solid_angle * probability), way);
 }
 
 PathStart Emitters::start_from_infinity(const Vec3& direction, const Rgb& irradiance,
@@ -231,14 +218,6 @@ PathStart Emitters::start_from_infinity(const Vec3& direction, const Rgb& irradi
       centre_ - direction * (2.0f * radius_) + frame.tangent * disc.x + frame.bitangent * disc.y;
   start.direction = direction;
   return start;
-}
-
-Rgb Emitters::sky_radiance(const Vec3& direction) const {
-  if (!scene_.sky) return Rgb(0.0f);
-  if (!scene_.sky->texture) return scene_.sky->radiance;
-  const Texture& texture = scene_.textures[index(*scene_.sky->texture)];
-  return scene_.sky->radiance *
-         glm::max(Rgb(sample(texture, to_lat_long(glm::normalize(-direction)))), Rgb(0.0f));
 }
 
 }  // namespace lantern

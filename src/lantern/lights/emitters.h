@@ -41,9 +41,6 @@ class Emitters {
   /// not be empty().
   PathStart start(Vec2 place, Vec2 way) const;
 
-  /// Radiance that arrives along `direction` from infinity; zero without a sky.
-  Rgb sky_radiance(const Vec3& direction) const;
-
  private:
   enum class Kind : std::uint8_t { kFront, kBack, kPunctual, kSky };
   struct Source {

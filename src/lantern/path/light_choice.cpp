@@ -3,6 +3,7 @@
 
 #include "lantern/core/hash.h"
 #include "lantern/sampling/warp.h"
+#include "lantern/scene/sky.h"
 #include "lantern/scene/surface.h"
 #include "lantern/scene/texture.h"
 #include "lantern/trace/tracer.h"
@@ -14,25 +15,6 @@
 
 namespace lantern {
 namespace {
-
-/// Azimuth from -z over +x and polar angle from +y, both as shares of the picture: the lat-long map
-/// of scene.h.
-Vec2 lat_long(const Vec3& direction) {
-  const float turns = std::atan2(direction.x, -direction.z) / (2.0f * kPi);
-  return {turns - std::floor(turns), std::acos(std::clamp(direction.y, -1.0f, 1.0f)) / kPi};
-}
-
-Vec3 direction_at(Vec2 lat_long) {
-  const float azimuth = lat_long.x * 2.0f * kPi, polar = lat_long.y * kPi;
-  return {std::sin(polar) * std::sin(azimuth), std::cos(polar),
-          -std::sin(polar) * std::cos(azimuth)};
-}
-
-/// Solid angle of a unit of area of the map.
-float map_to_sphere(Vec2 lat_long) {
-  constexpr float kPole = 1e-6f;
-  return 2.0f * kPi * kPi * std::max(kPole, std::sin(kPi * lat_long.y));
-}
 
 /// The picture's mean channel over each cell, times its solid angle. Look-ups blend neighbours:
 /// what can be seen anywhere in a cell has a part in its weight.
@@ -270,11 +252,11 @@ LightSample LightChoice::sample_punctual(const PunctualLight& light, float proba
 LightSample LightChoice::sample_sky(float probability, Vec2 u) const {
   const Distribution2D::Point chosen = sky_choice_.sample(u);
   LightSample sample;
-  sample.to_light = sample.direction = direction_at(chosen.position);
+  sample.to_light = sample.direction = from_lat_long(chosen.position);
   sample.far = kInfinity;
-  sample.pdf_solid_angle = probability * chosen.pdf / map_to_sphere(chosen.position);
+  sample.pdf_solid_angle = probability * chosen.pdf / lat_long_solid_angle(chosen.position);
   // Looked up by the direction, as for rays that find it by themselves.
-  sample.radiance = sky_radiance(sample.direction) / sample.pdf_solid_angle;
+  sample.radiance = sky_radiance(scene_, sample.direction) / sample.pdf_solid_angle;
   return sample;
 }
 
@@ -293,20 +275,12 @@ float LightChoice::pdf_of_hit(const LitPoint& point, std::uint32_t triangle, con
   return 2.0f * probability * distance * distance / std::abs(projected);
 }
 
-Rgb LightChoice::sky_radiance(const Vec3& direction) const {
-  if (!scene_.sky) return Rgb(0.0f);
-  if (!scene_.sky->texture) return scene_.sky->radiance;
-  const Texture& texture = scene_.textures[index(*scene_.sky->texture)];
-  return scene_.sky->radiance *
-         glm::max(Rgb(lantern::sample(texture, lat_long(direction))), Rgb(0.0f));
-}
-
 float LightChoice::pdf_of_sky(const LitPoint& point, const Vec3& direction) const {
   if (sky_irradiance_ == 0.0f) return 0.0f;
   const float near = tree_.empty() ? 0.0f : tree_.importance(point.position, point.normal);
   const float probability = sky_irradiance_ / (near + all_distant_irradiance(point));
-  const Vec2 at = lat_long(direction);
-  return probability * sky_choice_.pdf(at) / map_to_sphere(at);
+  const Vec2 at = to_lat_long(direction);
+  return probability * sky_choice_.pdf(at) / lat_long_solid_angle(at);
 }
 
 }  // namespace lantern

@@ -51,9 +51,8 @@ class LightChoice {
   float pdf_of_hit(const LitPoint& point, std::uint32_t triangle, const Vec3& direction,
                    float distance) const;
 
-  /// What arrives from infinity against the unit `direction` of a ray that left the scene.
-  Rgb sky_radiance(const Vec3& direction) const;
-  /// The density of sample() in solid angle there, from `point`.
+  /// The density of sample() from `point` in solid angle along the unit `direction` of a ray that
+  /// leaves the scene.
   float pdf_of_sky(const LitPoint& point, const Vec3& direction) const;
 
  private:

@@ -4,6 +4,7 @@
 #include "lantern/core/hash.h"
 #include "lantern/sampling/sobol.h"
 #include "lantern/sampling/warp.h"
+#include "lantern/scene/sky.h"
 #include "lantern/scene/surface.h"
 #include "lantern/trace/eye.h"
 
@@ -146,7 +147,7 @@ class TileTracer {
       const Vec3 direction =
           glm::normalize(Vec3(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]));
       if (!hits[i]) {
-        radiance_[pixels[i]] += in_.lights.sky_radiance(direction);
+        radiance_[pixels[i]] += sky_radiance(in_.scene, direction);
         continue;
       }
       arrive(hits[i], direction, {{}, Rgb(1.0f), pixels[i], 0, 0.0f}, light_points[i]);
@@ -249,7 +250,7 @@ class TileTracer {
       if (!hits[i]) {
         const float weight =
             balance(ray.pdf_solid_angle, in_.lights.pdf_of_sky(ray.start, direction));
-        radiance_[ray.pixel] += ray.throughput * in_.lights.sky_radiance(direction) * weight;
+        radiance_[ray.pixel] += ray.throughput * sky_radiance(in_.scene, direction) * weight;
         continue;
       }
       arrive(hits[i], direction, ray, light_points[i]);

@@ -2,7 +2,7 @@
 #include "lantern/radiosity/display.h"
 
 #include "lantern/radiosity/interpolation.h"
-#include "lantern/radiosity/sky.h"
+#include "lantern/scene/sky.h"
 #include "lantern/scene/surface.h"
 #include "lantern/trace/embree.h"
 #include "lantern/trace/eye.h"
@@ -48,7 +48,7 @@ Image Display::draw(const Camera& camera, std::span<const glm::dvec3> irradiance
   const VertexValues values = interpolate_to_vertices(patches_, irradiance);
   const Eye eye(camera, options.width, options.height);
   const auto radiance = [&](const Hit& hit, const Vec3& direction) {
-    if (!hit) return sky_seen(scene_, direction);
+    if (!hit) return sky_radiance(scene_, direction);
     const bool front = glm::dot(world_.area_vector(hit.triangle), direction) < 0.0f;
     const std::vector<glm::dvec3>& at = front ? values.front : values.back;
     const uvec3 v = patches_.smooth_vertices[hit.triangle];

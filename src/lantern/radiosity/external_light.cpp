@@ -4,7 +4,8 @@
 #include "lantern/core/parallel.h"
 #include "lantern/radiosity/element_points.h"
 #include "lantern/radiosity/random.h"
-#include "lantern/radiosity/sky.h"
+#include "lantern/radiosity/sky_sampler.h"
+#include "lantern/scene/sky.h"
 
 #include <algorithm>
 #include <optional>
@@ -81,7 +82,7 @@ class Gatherer {
         irradiance = draw.radiance_over_pdf * std::max(glm::dot(towards, normal), 0.0f);
       } else {
         towards = Frame(normal).to_world(cosine_direction(u));
-        irradiance = kPi * sky_seen(scene_, towards);
+        irradiance = kPi * sky_radiance(scene_, towards);
       }
       if (is_black(irradiance)) continue;
       if (!tracer_.occluded({.origin = position, .direction = towards})) sum += irradiance;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "lantern/radiosity/sky.h"
+#include "lantern/radiosity/sky_sampler.h"
 
+#include "lantern/scene/sky.h"
 #include "lantern/scene/texture.h"
 
 #include <algorithm>
@@ -27,16 +28,6 @@ Found find(const double* cumulated, int count, double u) {
 }
 
 }  // namespace
-
-Rgb sky_seen(const Scene& scene, const Vec3& towards) {
-  if (!scene.sky) return Rgb(0.0f);
-  if (!scene.sky->texture) return scene.sky->radiance;
-  const Vec3 d = glm::normalize(towards);
-  const float turn = std::atan2(d.x, -d.z) * (0.5f * kInvPi);
-  const Vec2 uv(turn < 0.0f ? turn + 1.0f : turn, std::acos(std::clamp(d.y, -1.0f, 1.0f)) * kInvPi);
-  const Texture& texture = scene.textures[index(*scene.sky->texture)];
-  return scene.sky->radiance * glm::max(Rgb(sample(texture, uv)), Rgb(0.0f));
-}
 
 SkySampler::SkySampler(const Scene& scene) : scene_(scene) {
   assert(scene.sky && scene.sky->texture);
@@ -78,7 +69,7 @@ SkySampler::Draw SkySampler::draw(Vec2 u) const {
   const double cells = static_cast<double>(width_) * static_cast<double>(height_);
   const double pdf = row.share * cell.share * cells / (2.0 * glm::pi<double>() * glm::pi<double>());
   if (!(pdf > 0.0)) return {towards, Rgb(0.0f)};
-  return {towards, sky_seen(scene_, towards) * static_cast<float>(sine / pdf)};
+  return {towards, sky_radiance(scene_, towards) * static_cast<float>(sine / pdf)};
 }
 
 }  // namespace lantern

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the sky of a Scene looks like, and directions chosen by how bright it is there.
+// Directions of a textured sky, chosen by how bright it is there.
 #pragma once
 
 #include "lantern/scene/scene.h"
@@ -7,9 +7,6 @@
 #include <vector>
 
 namespace lantern {
-
-/// Radiance that is seen along `towards` (any length) where no surface is; zero without a sky.
-Rgb sky_seen(const Scene& scene, const Vec3& towards);
 
 /// Draws directions of a textured sky with a density that follows its luminance.
 class SkySampler {
