@@ -109,11 +109,16 @@ GatherOptions gather_options(const RenderOptions& options) {
   return gather_with;
 }
 
-GatherPass make_gather(const RenderJob& job, const GatherInput& input, GatherCounts& rays) {
+/// `rays` and `seconds_gpu` are those of all passes.
+GatherPass make_gather(const RenderJob& job, const GatherInput& input, GatherCounts& rays,
+                       std::map<std::string, double>& seconds_gpu) {
   if (job.options.backend == Backend::kGl) {
     const auto by_gl = std::make_shared<GlGather>(job, input.emitters);
-    return [by_gl](const VirtualLights& lights, std::size_t pass, const PixelsDone& done) {
-      return by_gl->gather(lights, pass, done);
+    return [by_gl, &seconds_gpu](const VirtualLights& lights, std::size_t pass,
+                                 const PixelsDone& done) {
+      Image image = by_gl->gather(lights, pass, done);
+      seconds_gpu = by_gl->seconds_of_stages();
+      return image;
     };
   }
   return [&, gather_with = gather_options(job.options)](
@@ -135,7 +140,7 @@ Rendered render_instant_radiosity(const RenderJob& job) {
   const WalkOptions walk_with = walk_options(job.scene, job.world, options.lights, result.warnings);
   GatherCounts rays;
   const GatherInput input{job.scene, job.world, job.tracer, emitters, job.camera};
-  const GatherPass gather_pass = make_gather(job, input, rays);
+  const GatherPass gather_pass = make_gather(job, input, rays, statistics.seconds_gpu);
   const Weigh weigh = [&, gather_with = gather_options(options)](const VirtualLights& pool,
                                                                  std::size_t pass) mutable {
     gather_with.pass = pass;
