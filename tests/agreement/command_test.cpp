@@ -469,6 +469,106 @@ TEST_F(CommandTest, MeasuresFrames) {
   expect_failure(bench({"--gl-device", "1000"}), 1, "no OpenGL device");
 }
 
+/// While it lives the environment has these variables.
+class Environment {
+ public:
+  using Variables = std::vector<std::pair<std::string, std::string>>;
+  explicit Environment(Variables variables) : variables_(std::move(variables)) {
+    for (const auto& [name, value] : variables_) ::setenv(name.c_str(), value.c_str(), 1);
+  }
+  ~Environment() {
+    for (const auto& [name, value] : variables_) ::unsetenv(name.c_str());
+  }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  Variables variables_;
+};
+
+// Mesa hides from a program what it is told to hide; other drivers know no such variables.
+TEST_F(CommandTest, GlThatLacksExtensionsDrawsTheSame) {
+  const auto draw = [&](const char* name, std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", own("cornell_box.scene"), "-o", path(name), "--size",
+                               "48x48", "--lights", "16", "--samples", "1", "--json"});
+    return run(more);
+  };
+  ASSERT_EQ(draw("cpu.pfm", {}).code, 0);
+  const Image cpu = read_image(folder_ / "cpu.pfm");
+  const std::pair<std::string, std::string> es = {"MESA_GL_VERSION_OVERRIDE", "2.1"};
+  const std::pair<std::string, std::string> es_3_0 = {"MESA_GLES_VERSION_OVERRIDE", "3.0"};
+  const auto without = [](const std::string& extensions) {
+    return std::pair<std::string, std::string>("MESA_EXTENSION_OVERRIDE", extensions);
+  };
+  const std::vector<Environment::Variables> lacking = {
+      {},
+      {{"MESA_GL_VERSION_OVERRIDE", "3.3"}, without("-GL_ARB_clip_control")},
+      {es, without("-GL_EXT_depth_clamp")},
+      {es, without("-GL_EXT_clip_control")},
+      {es, without("-GL_EXT_disjoint_timer_query")},
+      {es, es_3_0,
+       without("-GL_EXT_depth_clamp -GL_EXT_clip_control -GL_EXT_disjoint_timer_query "
+               "-GL_EXT_float_blend -GL_OES_texture_float_linear")}};
+  for (const Environment::Variables& variables : lacking) {
+    SCOPED_TRACE(testing::PrintToString(variables));
+    const Environment environment(variables);
+    const Outcome outcome = draw("gl.pfm", {"--backend", "gl"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const Image gl = read_image(folder_ / "gl.pfm");
+    // All but edges of surfaces agrees to the rounding of normals.
+    int differing = 0;
+    for (std::size_t i = 0; i < cpu.pixels.size(); ++i) {
+      constexpr float kRounding = 1e-3f;
+      const Rgb off = glm::abs(gl.pixels[i] - cpu.pixels[i]);
+      differing += max_component(off) > kRounding * max_component(cpu.pixels[i]) ? 1 : 0;
+    }
+    EXPECT_LT(differing, 0.01 * 48 * 48);
+    // Mesa may say on standard output what it could not hide.
+    const auto json = [](const std::string& out) {
+      return nlohmann::json::parse(out.substr(out.find('{')));
+    };
+    const bool timers = !json(run({"info", "--gl", "--json"}).out)["features"]["timers"].is_null();
+    EXPECT_EQ(json(outcome.out).contains("seconds_gpu"), timers);
+  }
+}
+
+TEST_F(CommandTest, SaysInOneLineWhatGlCannotDo) {
+  const auto draw = [&](const std::string& size) {
+    return run({"render", own("furnace.scene"), "-o", path("a.pfm"), "--backend", "gl", "--lights",
+                "4", "--samples", "1", "--size", size});
+  };
+  const auto gl = nlohmann::json::parse(run({"info", "--gl", "--json"}).out);
+  const int largest = gl["limits"]["texture size"];
+  if (largest < 32768) {
+    expect_failure(draw(std::to_string(largest + 1) + "x1"), 1, "is the most it takes");
+    EXPECT_THAT(files(), testing::IsEmpty());
+  }
+  if (gl["version"].get<std::string>().find("Mesa") == std::string::npos) return;
+  const auto fails_without = [&](const std::string& extension, const std::string& what,
+                                 const std::vector<std::string>& arguments) {
+    const Environment environment(
+        {{"MESA_GL_VERSION_OVERRIDE", "2.1"}, {"MESA_EXTENSION_OVERRIDE", "-" + extension}});
+    Outcome outcome = run(arguments);
+    outcome.out.clear();  // Mesa's own words about the variable
+    expect_failure(outcome, 1, what);
+  };
+  fails_without("GL_EXT_color_buffer_float", "float textures",
+                render("a.pfm", {"--backend", "gl"}));
+  fails_without("GL_EXT_float_blend", "float blending", radiosity("gpu", {}));
+}
+
+TEST_F(CommandTest, SaysWhereAShaderOfAFolderIsWrong) {
+  fs::copy(fs::path(LANTERN_SOURCE_DIR) / "shaders", folder_ / "shaders");
+  const std::string name = path("shaders/octahedral.glsl");
+  const Environment environment({{"LANTERN_SHADERS", folder_.path().string()}});
+  const auto arguments = render("a.pfm", {"--backend", "gl"});
+  EXPECT_EQ(run(arguments).code, 0);
+  const std::string good = read_text(name);
+  const auto lines = std::count(good.begin(), good.end(), '\n');
+  write_file(name, good + "float twice(float a) { return a + b; }\n");
+  expect_failure(run(arguments), 1, "shaders/octahedral.glsl:" + std::to_string(lines + 1));
+}
+
 TEST_F(CommandTest, TellsWhatTheStagesOfGlTake) {
   const auto stages = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--backend", "gl", "--json"});

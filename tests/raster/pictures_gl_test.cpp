@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <epoxy/gl.h>
 
 namespace lantern {
 namespace {
@@ -268,6 +269,19 @@ TEST(Pictures, AnUnknownDeviceIsAnError) {
   RenderOptions options = small(4);
   options.gl_device = 1000;
   EXPECT_THROW(picture(test::own_scene("cornell_box.scene"), options, Backend::kGl), Error);
+}
+
+TEST(Pictures, ALostContextIsAnError) {
+  const auto get_error = epoxy_glGetError;
+  epoxy_glGetError = []() -> GLenum { return GL_CONTEXT_LOST; };
+  std::string said;
+  try {
+    picture(test::own_scene("cornell_box.scene"), small(4), Backend::kGl);
+  } catch (const Error& e) {
+    said = e.what();
+  }
+  epoxy_glGetError = get_error;
+  EXPECT_THAT(said, HasSubstr("the context is lost"));
 }
 
 TEST(Pictures, ItEndsWhenToldTo) {

@@ -38,20 +38,23 @@ struct Both {
   Surfaces surfaces;
   StencilShadows shadows;
   StageTimes times;
-  GBuffer g_buffer{kWidth, kHeight};
-  gl::Texture mask{gl::Format::kRgba8, kWidth, kHeight};
+  GBuffer g_buffer;
+  gl::Texture mask;
   gl::Framebuffer framebuffer = gl::Framebuffer({&mask}, &g_buffer.depth);
   ClipRange range;
 
-  Both(const test::RasterStage& with, VolumeMethod method, ClipRange depths)
+  Both(const test::RasterStage& with, VolumeMethod method, ClipRange depths, int width = kWidth,
+       int height = kHeight)
       : stage(with),
         surfaces(with.scene, with.world, files),
         shadows(with.world, files, method),
+        g_buffer(width, height),
+        mask(gl::Format::kRgba8, width, height),
         range(depths) {}
 
   View view_of(const Camera& camera) const {
-    return make_view(camera, {.width = kWidth,
-                              .height = kHeight,
+    return make_view(camera, {.width = mask.width(),
+                              .height = mask.height(),
                               .offset = Vec2(0.3f, 0.6f),
                               .radius = stage.world.bounds.radius(),
                               .range = range});
@@ -302,6 +305,55 @@ TEST_P(ShadowsTest, WithoutClipControl) {
   const std::vector<Camera> cameras = random_cameras(stage.world.bounds, 6);
   expect_same(stage, VolumeMethod::kExact, 20, cameras, ClipRange::kFarIs1);
   expect_same(stage, VolumeMethod::kZFail, 20, cameras, ClipRange::kFarIs1);
+}
+
+/// Small pictures from very many places: what goes wrong with the eye, rather than with the edges,
+/// shows as a whole light's pixels.
+struct Anywhere {
+  const char* name;
+  Scene (*scene)();
+  std::size_t paths;
+};
+void PrintTo(const Anywhere& tested, std::ostream* out) { *out << tested.name; }
+
+class HundredCameras : public ::testing::TestWithParam<Anywhere> {};
+INSTANTIATE_TEST_SUITE_P(
+    In, HundredCameras,
+    ::testing::Values(Anywhere{"CornellBox", [] { return test::own_scene("cornell_box.scene"); },
+                               40},
+                      Anywhere{"TwoRooms", [] { return test::own_scene("two_rooms.scene"); }, 30},
+                      Anywhere{"Balls", [] { return test::room_of_balls(8, 8); }, 10}),
+    [](const ::testing::TestParamInfo<Anywhere>& tested) { return tested.param.name; });
+
+TEST_P(HundredCameras, SeeWhatShadowRaysSee) {
+  constexpr int kSize = 32, kCameras = 100;
+  const gl::Context context;
+  const test::RasterStage stage(GetParam().scene());
+  Both both(stage, VolumeMethod::kExact, ClipRange::kFarIs0, kSize, kSize);
+  const VirtualLights lights = stage.lights(GetParam().paths);
+  const EdgeList list(stage.world);
+  Difference all;
+  std::size_t pairs = 0, inside = 0;
+  for (const Camera& camera : random_cameras(stage.world.bounds, kCameras)) {
+    const Difference d = both.compare(camera, lights);
+    EXPECT_LT(d.share(), kOneView)
+        << "from " << camera.eye.x << ' ' << camera.eye.y << ' ' << camera.eye.z;
+    all.pixels += d.pixels;
+    all.lit += d.lit;
+    all.wrong += d.wrong;
+    for (const LightGroup& group : group_lights(lights, {}, stage.world.coordinate_scale())) {
+      for (const LightPoint& light : group.points) {
+        inside += list.volumes(light, camera.eye, VolumeCount::kPlain).eye_count != 0 ? 1 : 0;
+        ++pairs;
+      }
+    }
+  }
+  RecordProperty("wrong_of_a_million", static_cast<int>(1e6 * all.share()));
+  EXPECT_LT(all.share(), kEdges);
+  EXPECT_GT(all.lit, all.pixels / 20);
+  // Eyes in volumes and eyes in none.
+  EXPECT_GT(inside, pairs / 10);
+  EXPECT_LT(inside, pairs * 9 / 10);
 }
 
 TEST_P(ShadowsTest, Sibenik) {

@@ -55,8 +55,21 @@ EGLContext make_context(EGLDisplay display, Api api) {
     attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_PROFILE_MASK_KHR,
                                          EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT_KHR});
   }
-  attributes.push_back(EGL_NONE);
-  return eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+  const auto create = [&](std::vector<EGLint> all) {
+    all.push_back(EGL_NONE);
+    return eglCreateContext(display, config, EGL_NO_CONTEXT, all.data());
+  };
+  // After a reset of the GPU calls should say so, where the driver can tell.
+  std::vector<EGLint> telling = attributes;
+  if (api == Api::kDesktop) {
+    telling.insert(telling.end(), {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR,
+                                   EGL_LOSE_CONTEXT_ON_RESET_KHR});
+  } else if (epoxy_has_egl_extension(display, "EGL_EXT_create_context_robustness")) {
+    telling.insert(telling.end(), {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT,
+                                   EGL_LOSE_CONTEXT_ON_RESET_EXT});
+  }
+  const EGLContext context = create(telling);
+  return context != EGL_NO_CONTEXT ? context : create(attributes);
 }
 
 /// Empty if the context is current now.
