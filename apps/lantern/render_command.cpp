@@ -174,8 +174,8 @@ void add_radiosity(const RenderOptions& options, const RenderStatistics& statist
                    Metadata& metadata) {
   const RadiosityOptions& radiosity = options.radiosity;
   metadata["patches"] = std::to_string(statistics.radiosity.patches);
+  metadata["refine"] = std::to_string(statistics.radiosity.rounds);
   if (options.method == Method::kRadiosityMatrix) {
-    metadata["refine"] = std::to_string(statistics.radiosity.rounds);
     metadata["solver"] = radiosity.solver == Solver::kElimination ? "elimination" : "gauss-seidel";
     return;
   }
@@ -226,9 +226,8 @@ Metadata metadata_of(const Arguments& arguments, const RenderOptions& options,
 }
 
 nlohmann::json radiosity_json(Method method, const RadiosityStatistics& s) {
-  nlohmann::json out = {{"patches", s.patches}, {"elements", s.elements}};
+  nlohmann::json out = {{"patches", s.patches}, {"elements", s.elements}, {"rounds", s.rounds}};
   if (method == Method::kRadiosityMatrix) {
-    out["rounds"] = s.rounds;
     out["form_factor_rays"] = s.form_factors.rays;
     out["open_pairs"] = s.form_factors.open_pairs;
     out["screened_pairs"] = s.form_factors.screened_pairs;
@@ -420,9 +419,8 @@ void add_render(CLI::App& app) {
           ->capture_default_str();
   command
       ->add_option("--refine", a.radiosity.refinements,
-                   "Rounds that place patches where light varies (matrix)")
-      ->check(CLI::Range(0, 16))
-      ->capture_default_str();
+                   "Rounds that place patches where light varies (2; hemicube, progressive 0)")
+      ->check(CLI::Range(0, 16));
   command->add_option("--solver", a.solver, "gauss-seidel or elimination (matrix)")
       ->check(CLI::IsMember({"gauss-seidel", "elimination"}))
       ->capture_default_str();

@@ -60,7 +60,8 @@ struct PathTracing {
 /// How surfaces are cut into patches and light is exchanged between these (radiosity).
 struct RadiosityOptions {
   PatchOptions patches;
-  int refinements = 2;                   // matrix: rounds that place patches where light varies
+  std::optional<int> refinements;  // rounds that place patches where light varies; none: 2 for
+                                   // matrix and gpu, 0 for the others
   Solver solver = Solver::kGaussSeidel;  // matrix
   HemicubeOptions hemicube;
   double cutoff = 1e-3;  // progressive, gpu: the share of the flux emitted that may stay unshot

@@ -1,42 +1,40 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/pipeline/render_radiosity_hemicube.h"
 
-#include "lantern/pipeline/radiosity_stage.h"
+#include "lantern/pipeline/radiosity_rounds.h"
 #include "lantern/radiosity/hemicube_matrix.h"
 #include "lantern/radiosity/solve.h"
 
+#include <utility>
+
 namespace lantern {
+namespace {
+
+/// Time grows with the patches alone: as many more of one size cost no more than these rounds.
+constexpr int kRefinements = 0;
+
+}  // namespace
 
 Rendered render_radiosity_hemicube(const RenderJob& job) {
-  const RadiosityOptions& options = job.options.radiosity;
-  Rendered result;
-  RenderStatistics& statistics = result.statistics;
-  RadiosityStatistics& of_radiosity = statistics.radiosity;
   require_matrix_memory(least_elements(job));
-  const RadiosityStage stage(job);
-  of_radiosity.patches = stage.patches.size();
-  of_radiosity.elements = stage.patches.elements();
-  require_matrix_memory(stage.patches.elements());
-  statistics.seconds_prepare = job.watch.seconds();
-
-  const Stopwatch solving;
-  const FormFactors factors = hemicube_form_factors(
-      job.world, job.tracer, stage.patches, options.hemicube, job.stop, [&](double share) {
-        if (job.report) job.report({share, solving.seconds() * (1.0 / share - 1.0), 0});
-      });
-  GaussSeidelResult solution =
-      solve_by_gauss_seidel(stage.patches, factors, stage.external, {}, job.stop);
-  statistics.seconds_lights = solving.seconds();
-  of_radiosity.hemicubes = stage.patches.elements();
-  of_radiosity.row_sums = row_sums(stage.patches, factors);
-  of_radiosity.reciprocity_error = reciprocity_error(stage.patches, factors);
-  of_radiosity.sweeps = solution.sweeps;
-
-  const Stopwatch drawing;
-  result.image = draw(job, stage.patches, solution.irradiance);
-  statistics.seconds_gather = drawing.seconds();
-  statistics.passes = 1;
-  return result;
+  const auto solve = [&](const RadiosityStage& stage, RadiosityStatistics& statistics) {
+    require_matrix_memory(stage.patches.elements());
+    const Stopwatch watch;
+    const FormFactors factors = hemicube_form_factors(
+        job.world, job.tracer, stage.patches, job.options.radiosity.hemicube, job.stop,
+        [&](double share) {
+          if (!job.report) return;
+          job.report({share, watch.seconds() * (1.0 / share - 1.0), statistics.rounds});
+        });
+    GaussSeidelResult solution =
+        solve_by_gauss_seidel(stage.patches, factors, stage.external, {}, job.stop);
+    statistics.hemicubes = stage.patches.elements();
+    statistics.row_sums = row_sums(stage.patches, factors);
+    statistics.reciprocity_error = reciprocity_error(stage.patches, factors);
+    statistics.sweeps = solution.sweeps;
+    return RadiositySolution{std::move(solution.irradiance), job.stop.load() ? 1.0 : 0.0};
+  };
+  return render_in_rounds(job, kRefinements, solve);
 }
 
 }  // namespace lantern

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/pipeline/render_radiosity_matrix.h"
 
-#include "lantern/pipeline/radiosity_stage.h"
-#include "lantern/radiosity/refinement.h"
+#include "lantern/pipeline/radiosity_rounds.h"
 #include "lantern/radiosity/solve.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace lantern {
 namespace {
 
-/// Matrices that grow by this from round to round take a third of the last one's time together.
-constexpr double kGrowth = 2.0;
+/// A matrix grows with the square of the patches: they had better be where they are needed.
+constexpr int kRefinements = 2;
 
 std::uint64_t bytes_beside(std::size_t elements, Solver solver) {
   return solver == Solver::kElimination ? elimination_bytes(elements) : 0;
@@ -92,48 +90,15 @@ void warn_of_rows(const RadiosityStatistics& statistics, std::vector<std::string
 }  // namespace
 
 Rendered render_radiosity_matrix(const RenderJob& job) {
-  const RadiosityOptions& options = job.options.radiosity;
-  Rendered result;
-  RenderStatistics& statistics = result.statistics;
-  RadiosityStatistics& of_radiosity = statistics.radiosity;
+  const Solver solver = job.options.radiosity.solver;
   const std::size_t least = least_elements(job);
-  require_matrix_memory(least, bytes_beside(least, options.solver));
-  // Patches of a given size are that size; of a given count the first are fewer, and the rest go
-  // where they are needed.
-  const int refinements = options.patches.size ? 0 : options.refinements;
-  PatchOptions first = options.patches;
-  first.count =
-      static_cast<std::size_t>(static_cast<double>(first.count) / std::pow(kGrowth, refinements));
-  RadiosityStage stage(job, make_patches(job.scene, job.world, job.tracer, first));
-  statistics.seconds_prepare = job.watch.seconds();
-
-  const Stopwatch solving;
-  std::vector<glm::dvec3> irradiance = Round(job, stage).solve(of_radiosity);
-  for (int left = refinements; left > 0 && !job.stop.load(); --left) {
-    PatchMesh mesh = stage.patches.mesh;
-    refine_highest(mesh, variations(stage.patches, irradiance), kVariationOfHalf,
-                   static_cast<std::size_t>(static_cast<double>(options.patches.count) /
-                                            std::pow(kGrowth, left - 1)));
-    if (mesh.size() == stage.patches.size()) break;
-    RadiosityStage finer(
-        job, make_patches(job.scene, job.world, job.tracer, std::move(mesh), stage.patches.lit));
-    RadiosityStatistics of_finer = of_radiosity;
-    ++of_finer.rounds;
-    std::vector<glm::dvec3> better = Round(job, finer).solve(of_finer);
-    if (job.stop.load()) break;
-    stage = std::move(finer);
-    irradiance = std::move(better);
-    of_radiosity = of_finer;
-  }
-  statistics.seconds_lights = solving.seconds();
-  of_radiosity.patches = stage.patches.size();
-  of_radiosity.elements = stage.patches.elements();
-  warn_of_rows(of_radiosity, result.warnings);
-
-  const Stopwatch drawing;
-  result.image = draw(job, stage.patches, irradiance);
-  statistics.seconds_gather = drawing.seconds();
-  statistics.passes = 1;
+  require_matrix_memory(least, bytes_beside(least, solver));
+  Rendered result = render_in_rounds(
+      job, kRefinements, [&](const RadiosityStage& stage, RadiosityStatistics& statistics) {
+        std::vector<glm::dvec3> irradiance = Round(job, stage).solve(statistics);
+        return RadiositySolution{std::move(irradiance), job.stop.load() ? 1.0 : 0.0};
+      });
+  warn_of_rows(result.statistics.radiosity, result.warnings);
   return result;
 }
 

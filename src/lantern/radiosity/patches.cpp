@@ -127,6 +127,10 @@ void require_reflectance_below_one(const Scene& scene, const World& world, const
 
 }  // namespace
 
+void require_patch_memory(std::size_t count) {
+  require_memory(count * kBytesPerPatch, fmt::format("{} patches", count), "ask for fewer");
+}
+
 Patches make_patches(const Scene& scene, const World& world, const Tracer& tracer, PatchMesh mesh,
                      LitSides lit) {
   if (mesh.size() == 0) throw Error("the scene has no triangles");
@@ -190,8 +194,7 @@ Patches make_patches(const Scene& scene, const World& world, const Tracer& trace
     const std::uint64_t room = available_bytes() / kBytesPerPatch;
     refine_to_size(mesh, *options.size, std::min<std::uint64_t>(kMostPatches, room), dark);
   } else {
-    require_memory(options.count * kBytesPerPatch, fmt::format("{} patches", options.count),
-                   "ask for fewer");
+    require_patch_memory(options.count);
     refine_to_count(mesh, options.count, dark);
   }
   return make_patches(scene, world, tracer, std::move(mesh), std::move(lit));

@@ -61,6 +61,9 @@ struct Patches {
   }
 };
 
+/// Throws Error with the numbers if so many patches do not fit in memory.
+void require_patch_memory(std::size_t count);
+
 /// The surfaces cut as `options` say, but for those that no light comes to. Throws Error for a
 /// scene without triangles, for patches that reflect all light in some channel and for a size that
 /// makes too many.

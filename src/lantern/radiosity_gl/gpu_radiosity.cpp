@@ -65,7 +65,7 @@ class GpuRadiosity::Work {
   void take_stock();
   bool begin_round();
   void end_round();
-  void shoot_from(const Cluster& cluster);
+  void shoot_from(const Cluster& cluster, std::uint32_t shot);
   std::size_t viewpoint(const Cluster& cluster) const;
   Values received_values() const;
 
@@ -89,6 +89,7 @@ class GpuRadiosity::Work {
   std::vector<glm::dvec3> unshot_, irradiance_;
   std::vector<Cluster> round_;
   std::size_t next_in_round_ = 0;
+  std::uint32_t next_of_cluster_ = 0;
 };
 
 GpuRadiosity::Work::Work(const World& world, const Tracer& tracer, const Patches& patches,
@@ -163,9 +164,12 @@ gl::Texture GpuRadiosity::Work::make_corners() const {
 
 bool GpuRadiosity::Work::shoot() {
   if (next_in_round_ == round_.size() && !begin_round()) return false;
-  shoot_from(round_[next_in_round_]);
-  ++next_in_round_;
+  shoot_from(round_[next_in_round_], next_of_cluster_);
   ++shots_;
+  if (++next_of_cluster_ == round_[next_in_round_].shots) {
+    ++next_in_round_;
+    next_of_cluster_ = 0;
+  }
   if (next_in_round_ == round_.size()) end_round();
   return true;
 }
@@ -202,7 +206,7 @@ std::size_t GpuRadiosity::Work::viewpoint(const Cluster& cluster) const {
   return texel;
 }
 
-void GpuRadiosity::Work::shoot_from(const Cluster& cluster) {
+void GpuRadiosity::Work::shoot_from(const Cluster& cluster, std::uint32_t shot) {
   glm::dvec3 flux(0.0), centre(0.0);
   double weight = 0.0;
   for (std::size_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
@@ -214,7 +218,9 @@ void GpuRadiosity::Work::shoot_from(const Cluster& cluster) {
   centre /= weight;
   const std::size_t texel = viewpoint(cluster);
   constexpr std::size_t kPoints = ElementPoints::kPoints;
-  const Vec3 origin = views_[texel * kPoints + hash(options_.seed, shots_, 1) % kPoints];
+  // The shots of one element start from points well apart.
+  const std::size_t point = hash(options_.seed, shots_ - shot, 1) + shot * kPoints / cluster.shots;
+  const Vec3 origin = views_[texel * kPoints + point % kPoints];
   const float angle = 2.0f * kPi * to_unit_float(hash(options_.seed, shots_, 2));
   const HemicubePose pose = pose_at(origin, Vec3(patches_.element_normal(element(texel))), angle);
   items_.draw(pose);
@@ -255,7 +261,7 @@ void GpuRadiosity::Work::shoot_from(const Cluster& cluster) {
     target.bind();
     program.set("arrived", 0, arrived_.result());
     program.set("lost", 1, items_.lost());
-    program.set("flux", Vec3(flux));
+    program.set("flux", Vec3(flux / static_cast<double>(cluster.shots)));
     gl::draw_full_screen(no_attributes_);
   };
   receive_.set("gathered", 2, gathered_);
@@ -320,10 +326,15 @@ glm::dvec3 GpuRadiosity::Work::ambient() const {
     total += area(i);
     reflecting += area(i) * reflectance(i);
   }
-  for (std::size_t c = 0; c < next_in_round_; ++c) {
-    for (std::size_t i = round_[c].first; i < round_[c].first + round_[c].count; ++i) {
-      unshot -= area(i) * unshot_[i];
+  const auto take_off = [&](const Cluster& cluster, double share) {
+    for (std::size_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
+      unshot -= share * area(i) * unshot_[i];
     }
+  };
+  for (std::size_t c = 0; c < next_in_round_; ++c) take_off(round_[c], 1.0);
+  if (next_of_cluster_ > 0) {
+    const Cluster& current = round_[next_in_round_];
+    take_off(current, static_cast<double>(next_of_cluster_) / current.shots);
   }
   return unshot / (total - reflecting);
 }

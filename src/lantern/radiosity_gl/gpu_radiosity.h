@@ -41,7 +41,7 @@ class GpuRadiosity {
                std::span<const glm::dvec3> external, const GpuRadiosityOptions& options);
   ~GpuRadiosity();
 
-  /// One cluster shoots. False: what is unshot is below the cutoff.
+  /// One cluster shoots, or a part of one. False: what is unshot is below the cutoff.
   bool shoot();
 
   std::size_t shots() const;

@@ -1,11 +1,30 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/radiosity_gl/shooter_tree.h"
 
+#include "lantern/radiosity/element_points.h"
+
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <tuple>
 
 namespace lantern {
+namespace {
+
+/// How many parts of a cluster, each with its share of the flux and of the area, are within the
+/// limits; `radius` is in scene radii.
+double beyond(const ShotLimits& limits, double share, double radius) {
+  const double square = radius * radius;
+  return std::max({share / limits.share, std::sqrt(share * square / limits.spread),
+                   square / (limits.radius * limits.radius)});
+}
+
+std::uint32_t shots_for(double parts) {
+  return static_cast<std::uint32_t>(
+      std::ceil(std::clamp(parts, 1.0, static_cast<double>(ElementPoints::kPoints))));
+}
+
+}  // namespace
 
 ShooterTree::ShooterTree(const Patches& patches) : element_of_texel_(patches.elements()) {
   std::iota(element_of_texel_.begin(), element_of_texel_.end(), 0u);
@@ -73,6 +92,7 @@ std::vector<Cluster> ShooterTree::choose(std::span<const double> flux, double em
   struct Candidate {
     double flux;
     std::uint32_t node;
+    std::uint32_t shots;
   };
   std::vector<Candidate> candidates;
   std::vector<std::uint32_t> open(roots_.rbegin(), roots_.rend());
@@ -83,10 +103,9 @@ std::vector<Cluster> ShooterTree::choose(std::span<const double> flux, double em
     const double here = below[node.first + node.count] - below[node.first];
     if (here <= 0.0) continue;
     const double share = here / emitted, radius = node.radius / scene_radius;
-    const bool fits = share <= limits.share && share * radius * radius <= limits.spread &&
-                      radius <= limits.radius && node.count <= limits.count;
-    if (fits || node.child == 0) {
-      candidates.push_back({here, n});
+    const double excess = beyond(limits, share, radius);
+    if ((excess <= 1.0 && node.count <= limits.count) || node.child == 0) {
+      candidates.push_back({here, n, shots_for(excess)});
     } else {
       open.push_back(node.child + 1);
       open.push_back(node.child);
@@ -100,6 +119,7 @@ std::vector<Cluster> ShooterTree::choose(std::span<const double> flux, double em
   for (const Candidate& candidate : candidates) {
     if (candidate.flux < kLeastOfFirst * candidates.front().flux) break;
     chosen.push_back(nodes_[candidate.node]);
+    chosen.back().shots = candidate.shots;
   }
   return chosen;
 }

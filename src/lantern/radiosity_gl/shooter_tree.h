@@ -17,9 +17,10 @@ namespace lantern {
 struct Cluster {
   std::uint32_t first = 0;
   std::uint32_t count = 0;
-  glm::dvec3 centre{0.0};  // of its box, in metres
-  double radius = 0.0;     // about the centre, of all corners
-  double area = 0.0;       // exposed, m²
+  glm::dvec3 centre{0.0};   // of its box, in metres
+  double radius = 0.0;      // about the centre, of all corners
+  double area = 0.0;        // exposed, m²
+  std::uint32_t shots = 1;  // that its flux should be shot in, each from another point
 };
 
 /// What is left to a single hemicube, for the errors of a shot are those of one point standing for
@@ -39,8 +40,9 @@ class ShooterTree {
   const std::vector<std::uint32_t>& element_of_texel() const { return element_of_texel_; }
 
   /// The clusters to shoot from, those with most flux first: the coarsest within `limits`, of them
-  /// all that have at least 1/16 of the flux of the first. `flux` is in W, one for each texel, all
-  /// channels together; `emitted` likewise; `scene_radius` in metres.
+  /// all that have at least 1/16 of the flux of the first. An element beyond the limits takes
+  /// several shots. `flux` is in W, one for each texel, all channels together; `emitted` likewise;
+  /// `scene_radius` in metres.
   std::vector<Cluster> choose(std::span<const double> flux, double emitted, double scene_radius,
                               const ShotLimits& limits) const;
 
