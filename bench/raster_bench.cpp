@@ -91,7 +91,7 @@ int main(int argc, char** argv) {
   const gl::Program unshadowed(files, "shaders/full_screen.vert.glsl", "unshadowed",
                                {{"KIND", "0"}});
   const gl::Program shade(files, "shaders/full_screen.vert.glsl", "shaders/shade.frag.glsl",
-                          {{"KIND", "0"}});
+                          {{"KIND", "0"}, {"MAPS", "0"}});
   unshadowed.set_block("Lights", 0);
   shade.set_block("Lights", 0);
   const Surfaces surfaces(scene, world, files);

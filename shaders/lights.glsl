@@ -13,12 +13,17 @@ struct Point {
   vec3 position, shading, geometric;
 };
 
-vec3 irradiance_from(Light light, Point p) {
+/// As long as the light is far; of a directional light a unit vector.
+vec3 way_to(Light light, Point p) {
 #if KIND == 2
-  vec3 d = -light.place.xyz;
+  return -light.place.xyz;
 #else
-  vec3 d = light.place.xyz - p.position;
+  return light.place.xyz - p.position;
 #endif
+}
+
+vec3 irradiance_from(Light light, Point p) {
+  vec3 d = way_to(light, p);
   float at_point = dot(p.shading, d);
   if (at_point <= 0.0 || dot(p.geometric, d) <= 0.0) return vec3(0.0);
 #if KIND == 2

@@ -9,6 +9,7 @@ flat in vec3 v_geometric_normal;
 in vec3 v_normal;
 in vec2 v_texcoord;
 in vec4 v_colour;
+flat in uint v_triangle;
 
 uniform vec3 u_eye;
 uniform float u_lift;
@@ -24,7 +25,7 @@ uniform vec4 u_emission_look_up;
 
 layout(location = 0) out uvec4 o_point;       // position's bits, shading normal
 layout(location = 1) out uvec4 o_reflectance; // its bits, geometric normal
-layout(location = 2) out vec4 o_emission;     // radiance, 1
+layout(location = 2) out vec4 o_emission;     // radiance, number of the triangle and 1
 
 vec3 looked_up(sampler2D image, vec4 how) {
   if (how.w == 0.0) return vec3(1.0);
@@ -53,5 +54,7 @@ void main() {
   vec3 lifted = v_position + geometric * (side * u_lift);
   o_point = uvec4(floatBitsToUint(lifted), pack_unit(shading * side));
   o_reflectance = uvec4(floatBitsToUint(reflectance), pack_unit(geometric * side));
-  o_emission = vec4(emission, 1.0);
+  // Floats count no further; half a number is no triangle's.
+  const uint kCounted = 0xffffffu;
+  o_emission = vec4(emission, v_triangle < kCounted ? float(v_triangle + 1u) : 0.5);
 }

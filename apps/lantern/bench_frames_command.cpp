@@ -40,6 +40,7 @@ FrameRun frame_run(const Arguments& arguments, const std::string& shadows, Frame
   run.options.camera = arguments.camera.choice();
   run.options.backend = Backend::kGl;
   if (shadows == "interleaved") run.options.tile = arguments.tile;
+  if (shadows == "maps") run.options.shadows = ShadowMethod::kMaps;
   if (arguments.gl_device >= 0) run.options.gl_device = arguments.gl_device;
   return run;
 }
@@ -154,7 +155,7 @@ void add_bench_frames(CLI::App& bench) {
         ->capture_default_str();
   };
   add_list("--shadows", a.shadows, "As in render, separated by commas")
-      ->check(CLI::IsMember({"stencil", "interleaved"}));
+      ->check(CLI::IsMember({"stencil", "interleaved", "maps"}));
   command->add_option("--tile", a.tile, "Of interleaved, as in render")
       ->check(CLI::IsMember({2, 4, 8}))
       ->capture_default_str();

@@ -93,6 +93,7 @@ void add_instant_radiosity(const Arguments& arguments, RenderOptions& options) {
   options.shadow_rays = arguments.single_rays ? ShadowRays::kSingle : ShadowRays::kPackets;
   options.backend = arguments.backend == "gl" ? Backend::kGl : Backend::kCpu;
   if (arguments.shadows == "interleaved") options.tile = arguments.tile;
+  if (arguments.shadows == "maps") options.shadows = ShadowMethod::kMaps;
   options.volumes = arguments.volumes == "z-pass"   ? VolumeMethod::kZPass
                     : arguments.volumes == "z-fail" ? VolumeMethod::kZFail
                                                     : VolumeMethod::kExact;
@@ -298,6 +299,10 @@ void check_backend(const CLI::App& command, const Arguments& arguments) {
   if (arguments.shadows != "interleaved" && command.count("--tile") > 0) {
     throw UsageError("--tile takes --shadows interleaved");
   }
+  for (const char* option : {"--volumes", "--show-volumes"}) {
+    if (arguments.shadows != "maps" || command.count(option) == 0) continue;
+    throw UsageError(fmt::format("{} means nothing to --shadows maps", option));
+  }
   for (const char* option : of_other) {
     if (command.count(option) == 0) continue;
     throw UsageError(fmt::format("{} means nothing to --backend {}", option, arguments.backend));
@@ -380,8 +385,9 @@ void add_render(CLI::App& app) {
       ->check(CLI::IsMember({"cpu", "gl"}))
       ->capture_default_str();
   command
-      ->add_option("--shadows", a.shadows, "How --backend gl finds shadows: stencil, interleaved")
-      ->check(CLI::IsMember({"stencil", "interleaved"}))
+      ->add_option("--shadows", a.shadows,
+                   "How --backend gl finds shadows: stencil, interleaved, maps")
+      ->check(CLI::IsMember({"stencil", "interleaved", "maps"}))
       ->capture_default_str();
   command->add_option("--tile", a.tile, "Pixels a side that share the lights, if interleaved")
       ->check(CLI::IsMember({2, 4, 8}))

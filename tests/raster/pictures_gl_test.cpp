@@ -218,6 +218,36 @@ TEST(Pictures, InterleavedComesClose) {
   }
 }
 
+/// What maps miss is more slender than a texel, a fiftieth of a radian, and not next to a triangle
+/// that a texel sees.
+TEST(Pictures, MapsComeClose) {
+  struct Case {
+    Scene scene;
+    std::size_t paths;
+    double mean;
+  };
+  const std::vector<Case> cases = {{test::own_scene("cornell_box.scene"), 140, 0.0005},
+                                   {test::own_scene("two_rooms.scene"), 140, 0.001},
+                                   {test::room_of_balls(16, 16), 32, 0.004},
+                                   {exhibition(), 96, 0.0005}};
+  for (const Case& tested : cases) {
+    RenderOptions options = small(tested.paths);
+    const Image exact = picture(tested.scene, options, Backend::kGl);
+    options.shadows = ShadowMethod::kMaps;
+    const Image by_maps = picture(tested.scene, options, Backend::kGl);
+    EXPECT_LT(mean_difference(by_maps, exact), tested.mean);
+  }
+}
+
+TEST(Pictures, MapsAreDrawnTheSameEveryTime) {
+  RenderOptions options = small(24);
+  options.samples = 2;
+  options.shadows = ShadowMethod::kMaps;
+  const Scene scene = test::room_of_balls(8, 8);
+  const Image once = picture(scene, options, Backend::kGl);
+  EXPECT_EQ(picture(scene, options, Backend::kGl).pixels, once.pixels);
+}
+
 TEST(Pictures, InterleavedSamplesTakeTurns) {
   // Over sixteen samples every pixel of a tile meets every light.
   const Scene scene = test::own_scene("cornell_box.scene");

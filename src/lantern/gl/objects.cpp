@@ -31,6 +31,8 @@ FormatData data_of(Format format) {
       return {GL_RGBA32F, GL_RGBA, GL_FLOAT, 4, 4, true};
     case Format::kR32ui:
       return {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 1, 4, false};
+    case Format::kRg32ui:
+      return {GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 2, 4, false};
     case Format::kRgba32ui:
       return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 4, 4, false};
     case Format::kDepth32fStencil8:

@@ -63,7 +63,16 @@ class Buffer {
 };
 
 /// What a texel is. The formats that one can draw into (floats on ES: where kFloatTargets is).
-enum class Format { kRgba8, kR32f, kRgba32f, kR32ui, kRgba32ui, kDepth32f, kDepth32fStencil8 };
+enum class Format {
+  kRgba8,
+  kR32f,
+  kRgba32f,
+  kR32ui,
+  kRg32ui,
+  kRgba32ui,
+  kDepth32f,
+  kDepth32fStencil8
+};
 
 struct TextureOptions {
   bool linear = false;   // bilinear, 32-bit floats where kFloatFiltering is; else nearest

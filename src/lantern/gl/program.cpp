@@ -89,6 +89,9 @@ void Program::set(const char* uniform, std::uint32_t value) const {
   glUniform1ui(location(uniform), value);
 }
 void Program::set(const char* uniform, float value) const { glUniform1f(location(uniform), value); }
+void Program::set(const char* uniform, const glm::ivec2& value) const {
+  glUniform2iv(location(uniform), 1, glm::value_ptr(value));
+}
 void Program::set(const char* uniform, const Vec2& value) const {
   glUniform2fv(location(uniform), 1, glm::value_ptr(value));
 }

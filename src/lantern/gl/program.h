@@ -31,6 +31,7 @@ class Program {
   void set(const char* uniform, int value) const;
   void set(const char* uniform, std::uint32_t value) const;
   void set(const char* uniform, float value) const;
+  void set(const char* uniform, const glm::ivec2& value) const;
   void set(const char* uniform, const Vec2& value) const;
   void set(const char* uniform, const Vec3& value) const;
   void set(const char* uniform, const Vec4& value) const;

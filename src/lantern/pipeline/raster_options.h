@@ -12,6 +12,7 @@ inline RasterOptions raster_options(const RenderOptions& options) {
           .height = options.height,
           .samples = options.samples,
           .tile = options.tile,
+          .shadows = options.shadows,
           .volumes = options.volumes,
           .show_volumes = options.show_volumes};
 }

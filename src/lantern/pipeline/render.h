@@ -13,6 +13,7 @@
 #include "lantern/radiosity/hemicube_rows.h"
 #include "lantern/radiosity/patches.h"
 #include "lantern/radiosity/solve.h"
+#include "lantern/raster/shadow_method.h"
 #include "lantern/raster/volume_method.h"
 #include "lantern/scene/scene.h"
 
@@ -38,7 +39,7 @@ enum class Method {
 /// What gathers the lights (instant radiosity).
 enum class Backend {
   kCpu,  // shadow rays
-  kGl,   // shadow volumes in OpenGL
+  kGl,   // OpenGL
 };
 
 /// How lights are made (instant radiosity).
@@ -84,9 +85,10 @@ struct RenderOptions {
   bool compensate = false;
   ShadowRays shadow_rays = ShadowRays::kPackets;
   Backend backend = Backend::kCpu;
-  int tile = 1;                                 // GL: so many pixels a side share the lights
-  VolumeMethod volumes = VolumeMethod::kExact;  // GL
-  std::optional<std::size_t> show_volumes;      // GL: those of this light, over the picture
+  int tile = 1;                                   // GL: so many pixels a side share the lights
+  ShadowMethod shadows = ShadowMethod::kVolumes;  // GL
+  VolumeMethod volumes = VolumeMethod::kExact;    // GL
+  std::optional<std::size_t> show_volumes;        // GL: those of this light, over the picture
   std::optional<int> gl_device;  // of those that `lantern info --gl` names; none: the first usable
 
   PathTracing path;

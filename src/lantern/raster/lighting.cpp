@@ -6,22 +6,28 @@
 #include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace lantern {
 namespace {
 
 constexpr GLuint kLightsBinding = 0;
 
-gl::Program shade_program(const gl::ShaderFiles& files, LightFormula formula) {
+gl::Program shade_program(const gl::ShaderFiles& files, LightFormula formula,
+                          const ShadowMaps* maps) {
+  std::vector<gl::Definition> definitions = {{"KIND", std::to_string(static_cast<int>(formula))},
+                                             {"MAPS", maps ? "1" : "0"}};
+  if (maps) definitions.push_back(maps->definition());
   gl::Program program(files, "shaders/full_screen.vert.glsl", "shaders/shade.frag.glsl",
-                      {{"KIND", std::to_string(static_cast<int>(formula))}});
+                      definitions);
   program.set_block("Lights", kLightsBinding);
+  if (maps) ShadowMaps::prepare(program);
   return program;
 }
 
 }  // namespace
 
-Lighting::Lighting(const Surfaces& surfaces, StencilShadows& shadows, StageTimes& times,
+Lighting::Lighting(const Surfaces& surfaces, const Shadows& shadows, StageTimes& times,
                    const gl::ShaderFiles& files, int width, int height)
     : surfaces_(surfaces),
       shadows_(shadows),
@@ -29,9 +35,9 @@ Lighting::Lighting(const Surfaces& surfaces, StencilShadows& shadows, StageTimes
       g_buffer_(width, height),
       mask_(gl::Format::kRgba8, width, height),
       mask_framebuffer_({&mask_}, &g_buffer_.depth),
-      shade_{shade_program(files, LightFormula::kSurface),
-             shade_program(files, LightFormula::kPunctual),
-             shade_program(files, LightFormula::kDirectional)},
+      shade_{shade_program(files, LightFormula::kSurface, shadows.maps),
+             shade_program(files, LightFormula::kPunctual, shadows.maps),
+             shade_program(files, LightFormula::kDirectional, shadows.maps)},
       light_block_(std::span<const LightRecord>()),
       irradiance_{Target(gl::Format::kRgba32f, width, height),
                   Target(gl::Format::kRgba32f, width, height)} {}
@@ -44,8 +50,14 @@ void Lighting::draw(const View& view, std::span<const LightGroup> groups,
   irradiance_[0].framebuffer.bind();
   const float none[4] = {};
   glClearBufferfv(GL_COLOR, 0, none);
+  if (!shadows_.volumes) {
+    const float all_seen[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+    mask_framebuffer_.bind();
+    glClearBufferfv(GL_COLOR, 0, all_seen);
+  }
   for (const LightGroup& group : groups) {
-    shadows_.draw(group.points, view, mask_framebuffer_, times_);
+    if (shadows_.volumes) shadows_.volumes->draw(group.points, view, mask_framebuffer_, times_);
+    if (shadows_.maps) shadows_.maps->draw(group, times_);
     add(group);
     if (!group_done()) break;
   }
@@ -64,6 +76,10 @@ void Lighting::add(const LightGroup& group) {
   program.set("u_mask", 2, mask_);
   program.set("u_sum", 3, irradiance_[0].texture);
   program.set("u_count", static_cast<int>(group.records.size()));
+  if (shadows_.maps) {
+    shadows_.maps->set_in(program, 4);
+    program.set("u_emissions", 6, g_buffer_.emissions);
+  }
   irradiance_[1].framebuffer.bind();
   gl::draw_full_screen(no_vertices_);
   times_.end();

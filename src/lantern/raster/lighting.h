@@ -6,6 +6,7 @@
 #include "lantern/gl/objects.h"
 #include "lantern/gl/program.h"
 #include "lantern/raster/raster_lights.h"
+#include "lantern/raster/shadow_maps.h"
 #include "lantern/raster/stage_times.h"
 #include "lantern/raster/stencil_shadows.h"
 #include "lantern/raster/surfaces.h"
@@ -26,10 +27,17 @@ struct Target {
       : texture(format, width, height), framebuffer({&texture}) {}
 };
 
+/// Who says which lights are seen; where both are there both must say so.
+struct Shadows {
+  StencilShadows* volumes = nullptr;
+  ShadowMaps* maps = nullptr;
+};
+
 class Lighting {
  public:
-  /// Keeps references to `surfaces`, `shadows` and `times`. Views must have this size.
-  Lighting(const Surfaces& surfaces, StencilShadows& shadows, StageTimes& times,
+  /// Keeps references to `surfaces`, `times` and what `shadows` points to. Views must have this
+  /// size.
+  Lighting(const Surfaces& surfaces, const Shadows& shadows, StageTimes& times,
            const gl::ShaderFiles& files, int width, int height);
 
   /// Calls `group_done` after each group; once it returns false the rest is left out.
@@ -44,7 +52,7 @@ class Lighting {
   void add(const LightGroup& group);
 
   const Surfaces& surfaces_;
-  StencilShadows& shadows_;
+  Shadows shadows_;
   StageTimes& times_;
   GBuffer g_buffer_;
   gl::Texture mask_;

@@ -7,6 +7,7 @@
 #include "lantern/raster/interleaving.h"
 #include "lantern/raster/lighting.h"
 #include "lantern/raster/raster_lights.h"
+#include "lantern/raster/shadow_maps.h"
 #include "lantern/raster/stencil_shadows.h"
 #include "lantern/raster/surfaces.h"
 #include "lantern/raster/volume_view.h"
@@ -99,8 +100,9 @@ struct Rasteriser::State {
   gl::ShaderFiles files;
   StageTimes times;
   Surfaces surfaces;
-  StencilShadows shadows;
-  Lighting lighting;
+  std::optional<StencilShadows> volumes;
+  std::optional<ShadowMaps> maps;
+  std::optional<Lighting> lighting;
   std::optional<Interleaved> interleaved;
   gl::Program resolve;
   Target radiance;
@@ -115,10 +117,15 @@ struct Rasteriser::State {
                      .radius = all.bounds.radius(),
                      .range = gl.has(gl::kClipControl) ? ClipRange::kFarIs0 : ClipRange::kFarIs1},
         surfaces(scene, all, files),
-        shadows(all, files, method(with.volumes, gl)),
-        lighting(surfaces, shadows, times, files, view_options.columns(), view_options.rows()),
         resolve(files, "shaders/full_screen.vert.glsl", "shaders/resolve.frag.glsl"),
         radiance(gl::Format::kRgba32f, with.width, with.height) {
+    if (with.shadows == ShadowMethod::kMaps) {
+      maps.emplace(all, files, ShadowMapOptions{.range = view_options.range});
+    } else {
+      volumes.emplace(all, files, method(with.volumes, gl));
+    }
+    lighting.emplace(surfaces, Shadows{volumes ? &*volumes : nullptr, maps ? &*maps : nullptr},
+                     times, files, view_options.columns(), view_options.rows());
     if (with.tile > 1) interleaved.emplace(files, with, all.bounds.radius());
   }
 
@@ -136,7 +143,7 @@ struct Rasteriser::State {
     return make_view(camera, whole);
   }
   const GBuffer& whole_g_buffer() const {
-    return interleaved ? interleaved->g_buffer : lighting.g_buffer();
+    return interleaved ? interleaved->g_buffer : lighting->g_buffer();
   }
 
   /// The radiance of sample number `n` of all pixels.
@@ -147,16 +154,16 @@ struct Rasteriser::State {
     for (int y = 0; y < options.tile; ++y) {
       for (int x = 0; x < options.tile; ++x) {
         of_share.first = {x, y};
-        lighting.draw(make_view(camera, of_share),
-                      groups[static_cast<std::size_t>(y * options.tile + x)], group_done);
+        lighting->draw(make_view(camera, of_share),
+                       groups[static_cast<std::size_t>(y * options.tile + x)], group_done);
         if (!interleaved) continue;
         times.begin(Stage::kFilter);
-        interleaved->interleaving.take(lighting.irradiance(), x, y);
+        interleaved->interleaving.take(lighting->irradiance(), x, y);
         times.end();
       }
     }
     if (!interleaved) {
-      draw_radiance(lighting.g_buffer(), lighting.irradiance());
+      draw_radiance(lighting->g_buffer(), lighting->irradiance());
       return;
     }
     times.begin(Stage::kSurfaces);
@@ -204,6 +211,7 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
     const std::size_t n =
         pass * static_cast<std::size_t>(options.samples) + static_cast<std::size_t>(sample);
     const auto groups = s.groups(lights, bounds, n);
+    if (s.maps) s.maps->keep(groups.front());
     std::size_t steps = 0, step = 0;
     for (const auto& of_pixel : groups) steps += of_pixel.size();
     s.draw(camera, groups, n, [&] {
@@ -216,7 +224,7 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
     const std::vector<float> rgba = s.radiance.framebuffer.read<float>();
     s.times.collect();
     if (volumes) {
-      volumes->add(s.shadows, point_of(lights, *options.show_volumes, s.world.coordinate_scale()),
+      volumes->add(*s.volumes, point_of(lights, *options.show_volumes, s.world.coordinate_scale()),
                    s.view_of_sample(camera, n));
     }
     const float share = 1.0f / static_cast<float>(options.samples);

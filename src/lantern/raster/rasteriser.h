@@ -8,6 +8,7 @@
 #include "lantern/gl/info.h"
 #include "lantern/image/image.h"
 #include "lantern/lights/virtual_lights.h"
+#include "lantern/raster/shadow_method.h"
 #include "lantern/raster/volume_method.h"
 #include "lantern/scene/scene.h"
 #include "lantern/scene/world.h"
@@ -27,6 +28,7 @@ struct RasterOptions {
   int height = 512;
   int samples = 1;  // per pixel and pass
   int tile = 1;     // tile x tile pixels share the lights; 1: every sample against all of them
+  ShadowMethod shadows = ShadowMethod::kVolumes;
   VolumeMethod volumes = VolumeMethod::kExact;
   std::optional<std::size_t> show_volumes;  // those of this light, over the picture
 };

@@ -12,8 +12,9 @@
 
 namespace lantern {
 
-enum class Stage { kSurfaces, kVolumes, kShading, kFilter, kResolve };
-inline constexpr std::array kStageNames = {"surfaces", "volumes", "shading", "filter", "resolve"};
+enum class Stage { kSurfaces, kVolumes, kMaps, kShading, kFilter, kResolve };
+inline constexpr std::array kStageNames = {"surfaces", "volumes", "maps",
+                                           "shading",  "filter",  "resolve"};
 
 class StageTimes {
  public:

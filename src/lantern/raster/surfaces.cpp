@@ -13,7 +13,8 @@
 namespace lantern {
 namespace {
 
-constexpr GLuint kPosition = 0, kGeometricNormal = 1, kNormal = 2, kTexcoord = 3, kColour = 4;
+constexpr GLuint kPosition = 0, kGeometricNormal = 1, kNormal = 2, kTexcoord = 3, kColour = 4,
+                 kTriangle = 5;
 
 gl::Texture upload(const Texture& texture) {
   const bool bytes = texture.linear.empty();
@@ -25,6 +26,13 @@ gl::Texture upload(const Texture& texture) {
     uploaded.write<float>(texture.linear);
   }
   return uploaded;
+}
+
+gl::Buffer numbers(std::span<const std::uint32_t> order) {
+  std::vector<std::uint32_t> of_corners;
+  of_corners.reserve(3 * order.size());
+  for (const std::uint32_t t : order) of_corners.insert(of_corners.end(), 3, t);
+  return gl::Buffer(std::span<const std::uint32_t>(of_corners));
 }
 
 /// One of the world's arrays, a value for each corner of the triangles in this order.
@@ -85,12 +93,14 @@ Surfaces::Surfaces(const Scene& scene, const World& world, const gl::ShaderFiles
     batches_.back().count += 3;
   }
 
-  buffers_.reserve(5);
+  buffers_.reserve(6);
   buffers_.push_back(by_corner(world, order, world.positions));
   buffers_.push_back(geometric_normals(world, order));
-  vertices_.emplace(
-      std::initializer_list<gl::Attribute>{{.location = kPosition, .buffer = &buffers_[0]},
-                                           {.location = kGeometricNormal, .buffer = &buffers_[1]}});
+  buffers_.push_back(numbers(order));
+  vertices_.emplace(std::initializer_list<gl::Attribute>{
+      {.location = kPosition, .buffer = &buffers_[0]},
+      {.location = kGeometricNormal, .buffer = &buffers_[1]},
+      {.location = kTriangle, .buffer = &buffers_[2], .channels = 1, .integer = true}});
   const auto add = [&](const auto& values, GLuint location, int channels) {
     if (values.empty()) return;
     buffers_.push_back(by_corner(world, order, values));

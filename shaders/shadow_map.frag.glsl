@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// Which triangle a light sees through a texel of its map, and how far it is.
+#include "shaders/shadow_map.glsl"
+
+in float v_depth;
+flat in uint v_triangle;
+
+uniform ivec2 u_corner;  // of the map in the texture
+uniform int u_side;      // 1: inside the diamond alone, -1: outside, 0: all of the map
+uniform int u_on;        // and, if 0, on it
+
+layout(location = 0) out uvec2 o_texel;
+
+void main() {
+  if (u_side * off_diamond(ivec2(gl_FragCoord.xy) - u_corner) > u_on) discard;
+  o_texel = uvec2(v_triangle + 1u, floatBitsToUint(v_depth));
+}

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "lantern/raster/map_faces.h"
+
+namespace lantern {
+namespace {
+
+/// Least and largest of dot(axis, p) over the box.
+Vec2 extent(const Vec3& axis, const Bounds& box) {
+  const Vec3 a = axis * box.low, b = axis * box.high;
+  const Vec3 low = glm::min(a, b), high = glm::max(a, b);
+  return {low.x + low.y + low.z, high.x + high.y + high.z};
+}
+
+MapFrame parallel_frame(const Vec3& travel, const Bounds& bounds, int size) {
+  const Frame frame(travel);
+  // A texel at each side stays empty.
+  const float used = 1.0f - 2.0f / static_cast<float>(size);
+  const auto to_map = [&](const Vec3& axis) {
+    const Vec2 all = extent(axis, bounds);
+    const float scale = 2.0f * used / std::max(all.y - all.x, 1e-3f * bounds.radius());
+    return Vec4(axis * scale, -0.5f * (all.x + all.y) * scale);
+  };
+  return {to_map(frame.tangent), to_map(frame.bitangent), Vec4(travel, -extent(travel, bounds).x)};
+}
+
+/// Rows of a clip matrix whose depth is w's, as View has it.
+Mat4 clip_matrix(const Vec3& x, const Vec3& y, const Vec3& w, float radius, ClipRange range) {
+  const bool near_is_1 = range == ClipRange::kFarIs0;
+  const float near = radius * (near_is_1 ? 1e-6f : 1e-4f);
+  const Vec4 depth = near_is_1 ? Vec4(0.0f, 0.0f, 0.0f, near) : Vec4(w, -2.0f * near);
+  return glm::transpose(Mat4(Vec4(x, 0.0f), Vec4(y, 0.0f), depth, Vec4(w, 0.0f)));
+}
+
+/// The face of an octahedron where the coordinates have these signs: |x| + |y| + |z| is linear in
+/// it, and what is divided by that is its picture.
+MapFace octant(const MapFrame& frame, const Vec3& sign, float radius, int size, ClipRange range) {
+  const Vec3 x = Vec3(frame.x) * sign.x, y = Vec3(frame.y) * sign.y, z = Vec3(frame.z) * sign.z;
+  const Vec3 w = x + y + z;
+  MapFace face;
+  face.size = size / 2;
+  face.x = sign.x > 0.0f ? face.size : 0;
+  face.y = sign.y > 0.0f ? face.size : 0;
+  face.side = sign.z > 0.0f ? 1 : -1;
+  face.origin = Vec3(frame.x.w, frame.y.w, frame.z.w);
+  // From the map's middle lines outwards, 0 to 1; the lower half is folded out.
+  const Vec3 a = sign.z > 0.0f ? x : w - y;
+  const Vec3 b = sign.z > 0.0f ? y : w - x;
+  face.clip = clip_matrix(sign.x * (2.0f * a - w), sign.y * (2.0f * b - w), w, radius, range);
+  face.depth = w;
+  face.planes = {Vec4(x, 0.0f), Vec4(y, 0.0f), Vec4(z, 0.0f)};
+  return face;
+}
+
+MapFace parallel_face(const MapFrame& frame, const Bounds& bounds, int size, ClipRange range) {
+  const Vec3 travel(frame.z);
+  const Vec2 depths = extent(travel, bounds);
+  const float deep = std::max(depths.y - depths.x, 1e-3f * bounds.radius());
+  MapFace face;
+  face.size = size;
+  face.origin = travel * depths.x;
+  face.depth = travel;
+  // From a little less than 1 at the nearest to 0, or from -1 to 1.
+  const bool near_is_1 = range == ClipRange::kFarIs0;
+  const float scale = (near_is_1 ? -0.9f : 1.8f) / deep;
+  const Vec4 depth(travel * scale, near_is_1 ? 0.95f : -0.9f);
+  face.clip = glm::transpose(Mat4(frame.x, frame.y, depth, Vec4(0.0f, 0.0f, 0.0f, 1.0f)));
+  return face;
+}
+
+}  // namespace
+
+std::vector<MapFrame> map_frames(const LightGroup& group, const Bounds& bounds, int size) {
+  std::vector<MapFrame> frames;
+  for (const LightRecord& record : group.records) {
+    if (group.formula == LightFormula::kDirectional) {
+      frames.push_back(parallel_frame(Vec3(record.place), bounds, size));
+      continue;
+    }
+    // A point light has no axis.
+    const Frame frame(group.formula == LightFormula::kSurface ? Vec3(record.axis)
+                                                              : Vec3(0.0f, 0.0f, 1.0f));
+    // The second of two lights in a map shines down, into its other half.
+    const bool down = map_place(group.formula, frames.size()).half == MapHalf::kOutside;
+    frames.push_back({Vec4(frame.tangent, record.place.x), Vec4(frame.bitangent, record.place.y),
+                      Vec4(down ? -frame.normal : frame.normal, record.place.z)});
+  }
+  return frames;
+}
+
+MapPlace map_place(LightFormula formula, std::size_t light) {
+  const int i = static_cast<int>(light);
+  if (formula != LightFormula::kSurface) return {i, MapHalf::kWhole};
+  return {i / 2, i % 2 == 0 ? MapHalf::kInside : MapHalf::kOutside};
+}
+
+std::vector<MapFace> map_faces(const MapFrame& frame, LightFormula formula, MapHalf half,
+                               const Bounds& bounds, int size, ClipRange range) {
+  if (formula == LightFormula::kDirectional) return {parallel_face(frame, bounds, size, range)};
+  std::vector<MapFace> faces;
+  for (const float z : {1.0f, -1.0f}) {
+    if (half == (z > 0.0f ? MapHalf::kOutside : MapHalf::kInside)) continue;
+    for (const float y : {1.0f, -1.0f}) {
+      for (const float x : {1.0f, -1.0f}) {
+        faces.push_back(octant(frame, Vec3(x, y, z), bounds.radius(), size, range));
+      }
+    }
+  }
+  return faces;
+}
+
+}  // namespace lantern
