@@ -3,27 +3,16 @@
 //   radiosity_bench SCENE [--patches N] [--hemicube N] [--cutoff C] [--time S] [--threads T]
 #include "lantern/core/parallel.h"
 #include "lantern/load/load.h"
+#include "lantern/pipeline/stopwatch.h"
 #include "lantern/radiosity/progressive.h"
 #include "lantern/trace/embree.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
-#include <chrono>
-
 namespace {
 
 using namespace lantern;
-
-class Stopwatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 void measure(const Scene& scene, std::size_t count, const ProgressiveOptions& options,
              double most_seconds) {

@@ -6,6 +6,8 @@
 
 #include "lantern/core/hash.h"
 
+#include "tests/support/numbers.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,23 +22,8 @@ namespace lantern {
 namespace {
 
 using glm::dvec3;
+using test::Numbers;
 using ::testing::SizeIs;
-
-class Numbers {
- public:
-  explicit Numbers(std::uint64_t seed) : seed_(seed) {}
-  float in(float low, float high) {
-    return low + (high - low) * to_unit_float(hash(seed_, next_++));
-  }
-  Vec3 in_box(float half) {
-    const float x = in(-half, half), y = in(-half, half);
-    return {x, y, in(-half, half)};
-  }
-
- private:
-  std::uint64_t seed_;
-  std::uint64_t next_ = 0;
-};
 
 void add(Scene& scene, std::vector<Vec3> positions, std::vector<uvec3> triangles,
          const Mat4& transform = Mat4(1.0f)) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Embree against brute force in double precision, ray by ray. Where they differ, the ray must
 // graze: pass an edge, the end of its range or the rim of a hole within rounding.
-#include "lantern/core/hash.h"
 #include "lantern/load/load.h"
 #include "lantern/scene/surface.h"
 #include "lantern/trace/brute_force.h"
 #include "lantern/trace/embree.h"
+
+#include "tests/support/numbers.h"
 
 #include <gtest/gtest.h>
 
@@ -26,26 +27,7 @@ namespace {
 
 using glm::dvec2;
 using glm::dvec3;
-
-/// Evenly distributed numbers, the same in every run.
-class Numbers {
- public:
-  explicit Numbers(std::uint64_t seed) : seed_(seed) {}
-  float in(float low, float high) {
-    return low + (high - low) * to_unit_float(hash(seed_, next_++));
-  }
-  Vec3 in_box(float half) {
-    const float x = in(-half, half), y = in(-half, half);
-    return {x, y, in(-half, half)};
-  }
-  std::uint32_t below(std::size_t n) {
-    return static_cast<std::uint32_t>(hash(seed_, next_++) % n);
-  }
-
- private:
-  std::uint64_t seed_;
-  std::uint64_t next_ = 0;
-};
+using test::Numbers;
 
 Mesh random_triangles(int count, float size, std::uint64_t seed) {
   Numbers numbers(seed);

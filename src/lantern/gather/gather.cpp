@@ -87,7 +87,7 @@ class TileGatherer {
       const bool inside = x < options_.width && y < options_.height;
       active.lane[i] = inside ? -1 : 0;
       pixels[i] = inside ? static_cast<std::uint32_t>(y * options_.width + x) : 0;
-      set_ray(rays, i, origin, direction);
+      rays.set(i, origin, direction);
       counts_.camera_rays += inside ? 1 : 0;
     }
     Hit hits[kPacket];
@@ -132,18 +132,6 @@ class TileGatherer {
             depth};
   }
 
-  static void set_ray(RayPacket& rays, int i, const Vec3& origin, const Vec3& direction) {
-    rays.origin_x[i] = origin.x;
-    rays.origin_y[i] = origin.y;
-    rays.origin_z[i] = origin.z;
-    rays.direction_x[i] = direction.x;
-    rays.direction_y[i] = direction.y;
-    rays.direction_z[i] = direction.z;
-    rays.far[i] = kInfinity;
-    rays.mask[i] = ~0u;
-    rays.id[i] = static_cast<std::uint32_t>(i);
-  }
-
   /// Up to sixteen points against all lights, into their pixels.
   void gather_at(std::span<const ShadingPoint> points, Image& image) {
     if (points.empty()) return;
@@ -186,9 +174,8 @@ class TileGatherer {
       const Vec3 direction = Frame(p.shading_normal).to_world(local);
       active.lane[i] = glm::dot(direction, p.geometric_normal) > 0.0f ? -1 : 0;
       counts_.compensation_rays += active.lane[i] != 0 ? 1 : 0;
-      set_ray(rays, static_cast<int>(i), p.position, direction);
       // Further than this the bound takes nothing.
-      rays.far[i] = 1.0f / std::sqrt(bound_.reflected());
+      rays.set(static_cast<int>(i), p.position, direction, 1.0f / std::sqrt(bound_.reflected()));
     }
     Hit hits[kPacket];
     in_.tracer.closest(active, rays, hits);

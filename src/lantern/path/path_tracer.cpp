@@ -45,19 +45,6 @@ struct Extension {
   float pdf_solid_angle;
 };
 
-void set_ray(RayPacket& rays, int lane, const Vec3& origin, const Vec3& direction, float far) {
-  rays.origin_x[lane] = origin.x;
-  rays.origin_y[lane] = origin.y;
-  rays.origin_z[lane] = origin.z;
-  rays.direction_x[lane] = direction.x;
-  rays.direction_y[lane] = direction.y;
-  rays.direction_z[lane] = direction.z;
-  rays.near[lane] = 0.0f;
-  rays.far[lane] = far;
-  rays.mask[lane] = ~0u;
-  rays.id[lane] = static_cast<std::uint32_t>(lane);
-}
-
 /// Weight of a sample that its own technique finds with density `own`. [Veach & Guibas 1995]
 float balance(float own, float other) { return own / (own + other); }
 
@@ -137,7 +124,7 @@ class TileTracer {
       const Vec3 direction =
           eye_.direction(static_cast<float>(x0_ + x) + u.z, static_cast<float>(y0_ + y) + u.w);
       active.lane[i] = -1;
-      set_ray(rays, i, origin, direction, kInfinity);
+      rays.set(i, origin, direction, kInfinity);
       ++counts_.camera_rays;
     }
     Hit hits[kPacket];
@@ -200,7 +187,7 @@ class TileTracer {
             light.pdf_solid_angle > 0.0f ? balance(light.pdf_solid_angle, pdf_of_ray) : 1.0f;
         lit[i] = v.throughput * light.radiance * (pdf_of_ray * weight);
         active.lane[i] = -1;
-        set_ray(rays, static_cast<int>(i), v.position, light.to_light, light.far);
+        rays.set(static_cast<int>(i), v.position, light.to_light, light.far);
         ++counts_.shadow_rays;
       }
       in_.tracer.occluded(active, rays);
@@ -238,7 +225,7 @@ class TileTracer {
       extensions[i] = {
           {v.position, v.shading_normal}, throughput, v.pixel, bounces, local.z * kInvPi};
       active.lane[i] = -1;
-      set_ray(rays, static_cast<int>(i), v.position, direction, kInfinity);
+      rays.set(static_cast<int>(i), v.position, direction, kInfinity);
       ++counts_.bounce_rays;
     }
     Hit hits[kPacket];

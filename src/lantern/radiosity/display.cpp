@@ -21,18 +21,6 @@ Vec2 place_in_pixel(int n) {
   return Vec2(glm::fract(0.5 + static_cast<double>(n) * step));
 }
 
-void set_ray(RayPacket& rays, int i, const Vec3& origin, const Vec3& direction) {
-  rays.origin_x[i] = origin.x;
-  rays.origin_y[i] = origin.y;
-  rays.origin_z[i] = origin.z;
-  rays.direction_x[i] = direction.x;
-  rays.direction_y[i] = direction.y;
-  rays.direction_z[i] = direction.z;
-  rays.far[i] = kInfinity;
-  rays.mask[i] = ~0u;
-  rays.id[i] = static_cast<std::uint32_t>(i);
-}
-
 }  // namespace
 
 Display::Display(const Scene& scene, const World& world, const Patches& patches)
@@ -73,7 +61,7 @@ Image Display::draw(const Camera& camera, std::span<const glm::dvec3> irradiance
         for (int i = 0; i < count; ++i) {
           directions[i] =
               eye.direction(static_cast<float>(x0 + i) + place.x, static_cast<float>(y) + place.y);
-          set_ray(rays, i, eye.origin(), directions[i]);
+          rays.set(i, eye.origin(), directions[i]);
           active.lane[i] = -1;
         }
         Hit hits[kPacket];

@@ -132,15 +132,7 @@ class Assembler {
         const Vec3 way = points_.at(j, k ^ shift) - from;
         weights[k] = weight(i, j, way);
         active.lane[k] = weights[k] > 0.0 ? -1 : 0;
-        rays.origin_x[k] = from.x;
-        rays.origin_y[k] = from.y;
-        rays.origin_z[k] = from.z;
-        rays.direction_x[k] = way.x;
-        rays.direction_y[k] = way.y;
-        rays.direction_z[k] = way.z;
-        rays.far[k] = 1.0f;
-        rays.mask[k] = ~0u;
-        rays.id[k] = static_cast<std::uint32_t>(k);
+        rays.set(static_cast<int>(k), from, way, 1.0f);
       }
       tracer_.occluded(active, rays);
       for (std::size_t k = 0; k < kPacket; ++k) {

@@ -68,19 +68,7 @@ void Hemicube::draw(const Tracer& tracer, const HemicubeView& view, std::size_t 
   LaneMask active;
   const std::size_t first = packet * kPacket;
   for (int i = 0; i < kPacket; ++i) {
-    const Vec3 d = direction(view, first + static_cast<std::size_t>(i));
-    rays.origin_x[i] = view.origin.x;
-    rays.origin_y[i] = view.origin.y;
-    rays.origin_z[i] = view.origin.z;
-    rays.direction_x[i] = d.x;
-    rays.direction_y[i] = d.y;
-    rays.direction_z[i] = d.z;
-    rays.near[i] = 0.0f;
-    rays.far[i] = kInfinity;
-    rays.time[i] = 0.0f;
-    rays.mask[i] = ~0u;
-    rays.id[i] = static_cast<std::uint32_t>(i);
-    rays.flags[i] = 0;
+    rays.set(i, view.origin, direction(view, first + static_cast<std::size_t>(i)));
     active.lane[i] = -1;
   }
   tracer.closest(active, rays, hits);

@@ -33,6 +33,22 @@ struct alignas(64) RayPacket {
   float direction_x[kPacket], direction_y[kPacket], direction_z[kPacket], time[kPacket];
   float far[kPacket];
   std::uint32_t mask[kPacket], id[kPacket], flags[kPacket];
+
+  /// Puts a ray that starts at `origin` into lane i.
+  void set(int i, const Vec3& origin, const Vec3& direction, float to = kInfinity) {
+    origin_x[i] = origin.x;
+    origin_y[i] = origin.y;
+    origin_z[i] = origin.z;
+    near[i] = 0.0f;
+    direction_x[i] = direction.x;
+    direction_y[i] = direction.y;
+    direction_z[i] = direction.z;
+    time[i] = 0.0f;
+    far[i] = to;
+    mask[i] = ~0u;
+    id[i] = static_cast<std::uint32_t>(i);
+    flags[i] = 0;
+  }
 };
 /// 0: the lane is idle; -1: it holds a ray.
 struct alignas(64) LaneMask {
