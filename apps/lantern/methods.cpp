@@ -60,6 +60,7 @@ const std::vector<SpecialOption>& special_options() {
       {"--no-ambient", {Method::kRadiosityProgressive, Method::kRadiosityGpu}},
       {"--shadows", {Method::kInstantRadiosity}},
       {"--tile", {Method::kInstantRadiosity}},
+      {"--deal-lights", {Method::kInstantRadiosity}},
       {"--volumes", {Method::kInstantRadiosity}},
       {"--show-volumes", {Method::kInstantRadiosity}},
       {"--gl-device", {Method::kInstantRadiosity}},

@@ -34,6 +34,7 @@ struct Arguments {
   std::string backend = "cpu";
   std::string shadows = "stencil";
   int tile = 4;
+  bool deal_lights = false;
   std::string volumes = "exact";
   std::optional<std::size_t> show_volumes;
   int gl_device = -1;
@@ -98,6 +99,7 @@ void add_instant_radiosity(const Arguments& arguments, RenderOptions& options) {
                     : arguments.volumes == "z-fail" ? VolumeMethod::kZFail
                                                     : VolumeMethod::kExact;
   options.show_volumes = arguments.show_volumes;
+  options.deal_lights = arguments.deal_lights;
   if (arguments.gl_device >= 0) options.gl_device = arguments.gl_device;
 }
 
@@ -161,6 +163,7 @@ void add_instant_radiosity(const Arguments& arguments, const RenderOptions& opti
                    {"backend", arguments.backend}});
   if (options.backend == Backend::kGl) metadata["shadows"] = arguments.shadows;
   if (options.tile > 1) metadata["tile"] = std::to_string(options.tile);
+  if (options.deal_lights) metadata["deal-lights"] = "yes";
   if (options.volumes != VolumeMethod::kExact) metadata["volumes"] = arguments.volumes;
   if (options.show_volumes) metadata["show-volumes"] = std::to_string(*options.show_volumes);
   if (!arguments.lights_from.empty()) metadata["lights-from"] = arguments.lights_from;
@@ -295,7 +298,8 @@ void check_backend(const CLI::App& command, const Arguments& arguments) {
   }
   const std::vector<const char*> of_other =
       gl ? std::vector{"--compensate", "--single-rays"}
-         : std::vector{"--shadows", "--tile", "--volumes", "--show-volumes", "--gl-device"};
+         : std::vector{"--shadows", "--tile",         "--deal-lights",
+                       "--volumes", "--show-volumes", "--gl-device"};
   if (arguments.shadows != "interleaved" && command.count("--tile") > 0) {
     throw UsageError("--tile takes --shadows interleaved");
   }
@@ -392,6 +396,9 @@ void add_render(CLI::App& app) {
   command->add_option("--tile", a.tile, "Pixels a side that share the lights, if interleaved")
       ->check(CLI::IsMember({2, 4, 8}))
       ->capture_default_str();
+  command->add_flag(
+      "--deal-lights", a.deal_lights,
+      "Deal the lights out among the samples of a pixel (gl): smooth edges for little");
   command
       ->add_option("--volumes", a.volumes,
                    "How shadow volumes are counted: exact; z-pass, z-fail: the classics, for study")

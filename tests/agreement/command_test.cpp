@@ -660,6 +660,7 @@ TEST_F(CommandTest, RefusesWrongUsage) {
       render("a.png", {"--backend", "gl", "--tile", "4"}),
       render("a.png", {"--backend", "gl", "--shadows", "interleaved", "--tile", "3"}),
       render("a.png", {"--shadows", "stencil"}),
+      render("a.png", {"--deal-lights"}),
       render("a.png", {"--show-volumes", "0"}),
       render("a.png", {"--backend", "gl", "--show-volumes", "first"}),
       render("a.png", {"--backend", "gl", "--volumes", "z"}),

@@ -13,6 +13,7 @@ inline RasterOptions raster_options(const RenderOptions& options) {
           .samples = options.samples,
           .tile = options.tile,
           .shadows = options.shadows,
+          .deal_lights = options.deal_lights,
           .volumes = options.volumes,
           .show_volumes = options.show_volumes};
 }

@@ -87,8 +87,9 @@ struct RenderOptions {
   Backend backend = Backend::kCpu;
   int tile = 1;                                   // GL: so many pixels a side share the lights
   ShadowMethod shadows = ShadowMethod::kVolumes;  // GL
-  VolumeMethod volumes = VolumeMethod::kExact;    // GL
-  std::optional<std::size_t> show_volumes;        // GL: those of this light, over the picture
+  bool deal_lights = false;  // GL: out among the samples of a pixel, see RasterOptions
+  VolumeMethod volumes = VolumeMethod::kExact;  // GL
+  std::optional<std::size_t> show_volumes;      // GL: those of this light, over the picture
   std::optional<int> gl_device;  // of those that `lantern info --gl` names; none: the first usable
 
   PathTracing path;

@@ -48,6 +48,23 @@ VirtualLights subset(const VirtualLights& lights, std::span<const std::uint32_t>
   return few;
 }
 
+/// Lights and, for each of them, the bound on its geometry term.
+struct Bounded {
+  VirtualLights lights;
+  std::vector<float> bounds;
+};
+
+/// Those that one of `shares` samples is dealt, as strong as all of them together.
+Bounded dealt(const VirtualLights& lights, std::span<const float> bounds, std::size_t shares,
+              std::size_t sample, std::size_t turn) {
+  const std::vector<std::uint32_t> chosen = share_out(lights, shares, turn)[sample];
+  Bounded few = {.lights = subset(lights, chosen), .bounds = {}};
+  for (Rgb& flux : few.lights.flux) flux *= static_cast<float>(shares);
+  if (bounds.empty()) return few;
+  for (const std::uint32_t i : chosen) few.bounds.push_back(bounds[i]);
+  return few;
+}
+
 /// The lights of each pixel of a tile, row by row; a tile of one pixel has them all.
 std::vector<std::vector<LightGroup>> groups_of_tile(const VirtualLights& lights,
                                                     std::span<const float> bounds, float scale,
@@ -132,7 +149,13 @@ struct Rasteriser::State {
   /// The lights of each pixel of a tile in sample number `n`.
   std::vector<std::vector<LightGroup>> groups(const VirtualLights& lights,
                                               std::span<const float> bounds, std::size_t n) const {
-    return groups_of_tile(lights, bounds, world.coordinate_scale(), options.tile, n);
+    const auto of_tile = [&](const VirtualLights& all, std::span<const float> their_bounds) {
+      return groups_of_tile(all, their_bounds, world.coordinate_scale(), options.tile, n);
+    };
+    if (!options.deal_lights) return of_tile(lights, bounds);
+    const auto samples = static_cast<std::size_t>(options.samples);
+    const Bounded mine = dealt(lights, bounds, samples, n % samples, n / samples);
+    return of_tile(mine.lights, mine.bounds);
   }
 
   /// Of the whole picture.
