@@ -4,7 +4,9 @@
 #include "lantern/radiosity/patches.h"
 
 #include "lantern/core/error.h"
+#include "lantern/core/hash.h"
 #include "lantern/radiosity/interpolation.h"
+#include "lantern/radiosity/t_junctions.h"
 #include "lantern/trace/embree.h"
 
 #include "tests/analytic/rooms.h"
@@ -132,6 +134,76 @@ TEST(PatchMesh, CornersKnowTheirPlaceInTheTriangleTheyComeFrom) {
       EXPECT_LT(glm::distance(a * (1.0 - w.x - w.y) + b * w.x + c * w.y, mesh.corner(f, k)),
                 kRounding);
     }
+  }
+}
+
+/// The floor [0, 2] x [0, 2] of two triangles on its left half and of `steps` quads on its right,
+/// whose corners lie on the left half's edge: at `slant` times their place beside it.
+Scene floor_with_t_junctions(int steps, float slant) {
+  Scene scene;
+  const MaterialId grey = add_material(scene, 0.5f, 1.0f);
+  const auto seam = [&](int i) {
+    const float z = 2.0f * static_cast<float>(i) / static_cast<float>(steps);
+    return Vec3(1.0f + slant * z, 0.0f, z);
+  };
+  const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    test::add_mesh(scene, grey, {a, b, c, d}, {{0, 1, 2}, {0, 2, 3}});
+  };
+  add({0, 0, 0}, {0, 0, 2}, seam(steps), seam(0));
+  for (int i = 0; i < steps; ++i) {
+    add(seam(i), seam(i + 1), {2, 0, seam(i + 1).z}, {2, 0, seam(i).z});
+  }
+  return scene;
+}
+
+/// The lengths of edges that one face has alone.
+double border_length(const PatchMesh& mesh) {
+  double sum = 0.0;
+  for (const auto& [edge, uses] : edge_uses(mesh)) {
+    if (uses == 1) sum += glm::distance(mesh.positions[edge.first], mesh.positions[edge.second]);
+  }
+  return sum;
+}
+
+TEST(PatchMesh, TJunctionsOfTheInputAreClosed) {
+  for (const int steps : {2, 3, 7}) {
+    for (const float slant : {0.0f, 0.2f}) {  // slanted, corners miss the edge by their rounding
+      const World world = make_world(floor_with_t_junctions(steps, slant));
+      PatchMesh mesh = make_patch_mesh(world);
+      const double area = mesh_area(mesh);
+      EXPECT_GT(border_length(mesh), 11.0);
+      close_t_junctions(mesh, 1e-6);
+      EXPECT_EQ(mesh.size(), world.size() + static_cast<std::size_t>(steps) - 1);
+      // What is left is the border of the floor.
+      EXPECT_NEAR(border_length(mesh), 8.0, 1e-5);
+      bisect_unevenly(mesh, 6);
+      EXPECT_NEAR(border_length(mesh), 8.0, 1e-5);
+      EXPECT_NEAR(mesh_area(mesh), area, 1e-6);
+      for (std::size_t f = 0; f < mesh.size(); ++f) {
+        const uvec3 v = world.triangles[mesh.faces[f].source];
+        EXPECT_GT(mesh.area_vector(f).y, 0.0);
+        for (int k = 0; k < 3; ++k) {
+          const glm::dvec2 w = mesh.faces[f].places[static_cast<std::size_t>(k)];
+          const glm::dvec3 place = glm::dvec3(world.positions[v.x]) * (1.0 - w.x - w.y) +
+                                   glm::dvec3(world.positions[v.y]) * w.x +
+                                   glm::dvec3(world.positions[v.z]) * w.y;
+          EXPECT_LT(glm::distance(place, mesh.corner(f, k)), 1e-6);
+        }
+      }
+    }
+  }
+}
+
+TEST(PatchMesh, VerticesBesideEdgesAreLeftAlone) {
+  for (const Vec3 away : {Vec3(0, 1e-3f, 0), Vec3(1e-3f, 0, 0)}) {
+    Scene scene = floor_with_t_junctions(2, 0.0f);
+    for (std::size_t m = 1; m < scene.meshes.size(); ++m) {
+      for (Vec3& p : scene.meshes[m].positions) p += away;
+    }
+    PatchMesh mesh = make_patch_mesh(make_world(scene));
+    const std::size_t before = mesh.size();
+    close_t_junctions(mesh, 1e-6);
+    EXPECT_EQ(mesh.size(), before);
   }
 }
 
@@ -275,6 +347,75 @@ TEST(Interpolation, WhatIsLinearOnAWallStaysLinearToItsBorders) {
       const glm::dvec3 expected = linear(patches.mesh.corner(i, k));
       // The ridge takes a millionth part of the gradient or a few.
       EXPECT_LT(glm::distance(at.front[patches.smooth_vertices[i][k]], expected), 1e-5);
+    }
+  }
+}
+
+/// The interpolated values at a point, as each of the patches that it lies in or at the border of
+/// has them.
+std::vector<double> values_at(const Patches& patches, const VertexValues& at,
+                              const glm::dvec3& point) {
+  std::vector<double> found;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const glm::dvec3 a = patches.mesh.corner(i, 0), b = patches.mesh.corner(i, 1),
+                     c = patches.mesh.corner(i, 2), n = patches.mesh.area_vector(i);
+    const glm::dvec3 w(glm::dot(n, glm::cross(b - point, c - point)),
+                       glm::dot(n, glm::cross(c - point, a - point)),
+                       glm::dot(n, glm::cross(a - point, b - point)));
+    if (std::min({w.x, w.y, w.z}) < -1e-9 * glm::dot(n, n)) continue;
+    const uvec3 v = patches.smooth_vertices[i];
+    found.push_back((w.x * at.front[v.x].g + w.y * at.front[v.y].g + w.z * at.front[v.z].g) /
+                    glm::dot(n, n));
+  }
+  return found;
+}
+
+/// Values without any order, so that only shared vertices can make them meet.
+std::vector<glm::dvec3> random_values(const Patches& patches) {
+  std::vector<glm::dvec3> values;
+  for (std::size_t e = 0; e < patches.elements(); ++e) {
+    values.emplace_back(static_cast<double>(to_unit_float(hash(e))));
+  }
+  return values;
+}
+
+TEST(Interpolation, IsContinuousAcrossTJunctionsOfTheInput) {
+  const Prepared prepared(floor_with_t_junctions(3, 0.0f));
+  for (const std::size_t count : {10u, 100u}) {
+    const Patches patches = prepared.patches(count);
+    const VertexValues at = interpolate_to_vertices(patches, random_values(patches));
+    for (int i = 0; i < 64; ++i) {
+      const std::vector<double> found =
+          values_at(patches, at, glm::dvec3(1.0, 0.0, (i + 0.5) / 32.0));
+      EXPECT_GE(found.size(), 2u);
+      for (const double value : found) EXPECT_NEAR(value, found.front(), 1e-6);
+    }
+  }
+}
+
+TEST(Interpolation, KeepsStepsWhereMaterialOrDirectionChanges) {
+  // Three squares in a row: the second is of another material, the third rises by 3 degrees. Light
+  // that is 1, 2 and 3 on them stays so up to their edges, and does not where nothing changes.
+  for (const bool changes : {true, false}) {
+    Scene scene;
+    const MaterialId grey = add_material(scene, 0.5f, 1.0f);
+    const MaterialId other = changes ? add_material(scene, 0.4f, 1.0f) : grey;
+    const float rise = changes ? 0.05f : 0.0f;
+    const Vec3 z(0, 0, 1);
+    add_quad(scene, grey, Vec3(0, 0, 0), z, Vec3(1, 0, 0));
+    add_quad(scene, other, Vec3(1, 0, 0), z, Vec3(1, 0, 0));
+    add_quad(scene, other, Vec3(2, 0, 0), z, Vec3(1, rise, 0));
+    const Prepared prepared(std::move(scene));
+    const Patches patches = prepared.patches(100);
+    std::vector<glm::dvec3> values;
+    for (std::size_t e = 0; e < patches.elements(); ++e) {
+      values.emplace_back(std::ceil(patches.centre[patches.patch[e]].x));
+    }
+    const VertexValues at = interpolate_to_vertices(patches, values);
+    for (const double x : {1.0, 2.0}) {
+      const std::vector<double> found = values_at(patches, at, glm::dvec3(x, 0.0, 0.3));
+      const auto [low, high] = std::minmax_element(found.begin(), found.end());
+      EXPECT_NEAR(*high - *low, changes ? 1.0 : 0.0, 1e-6) << x;
     }
   }
 }

@@ -7,6 +7,7 @@
 #include "lantern/radiosity/exposure.h"
 #include "lantern/radiosity/random.h"
 #include "lantern/radiosity/smoothing.h"
+#include "lantern/radiosity/t_junctions.h"
 #include "lantern/scene/surface.h"
 
 #include <algorithm>
@@ -20,6 +21,8 @@ constexpr std::size_t kMostPatches = 16'000'000;
 /// What a patch takes at the worst moment, with the tree that tells patches apart: 16 million were
 /// seen to fill 23 GB.
 constexpr std::uint64_t kBytesPerPatch = 1536;
+/// A vertex so near to an edge, relative to coordinates, is on it: sixteen roundings of these.
+constexpr double kOnEdge = 0x1p-20;
 
 const Material& material_of(const Scene& scene, const World& world, std::uint32_t triangle) {
   return scene.materials[index(world.materials[triangle])];
@@ -188,6 +191,7 @@ Patches make_patches(const Scene& scene, const World& world, const Tracer& trace
                      const PatchOptions& options) {
   PatchMesh mesh = make_patch_mesh(world);
   LitSides lit = lit_sides(scene, world, mesh, tracer);
+  close_t_junctions(mesh, kOnEdge * static_cast<double>(world.coordinate_scale()));
   LeftAlone dark(world.size());
   for (std::uint32_t t = 0; t < world.size(); ++t) dark[t] = !lit(t, true) && !lit(t, false);
   if (options.size) {
