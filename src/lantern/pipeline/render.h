@@ -65,7 +65,7 @@ struct RadiosityOptions {
                                    // matrix and gpu, 0 for the others
   Solver solver = Solver::kGaussSeidel;  // matrix
   HemicubeOptions hemicube;
-  double cutoff = 1e-3;  // progressive, gpu: the share of the flux emitted that may stay unshot
+  double cutoff = 1e-4;  // progressive, gpu: the share of the flux emitted that may stay unshot
   bool ambient = true;   // progressive, gpu: what is unshot lights all surfaces alike
 };
 

@@ -5,7 +5,9 @@
 #include "lantern/radiosity/hemicube_matrix.h"
 #include "lantern/radiosity/solve.h"
 
+#include <numeric>
 #include <utility>
+#include <vector>
 
 namespace lantern {
 namespace {
@@ -28,7 +30,9 @@ Rendered render_radiosity_hemicube(const RenderJob& job) {
         });
     GaussSeidelResult solution =
         solve_by_gauss_seidel(stage.patches, factors, stage.external, {}, job.stop);
-    statistics.hemicubes = stage.patches.elements();
+    const std::vector<std::size_t> points =
+        hemicube_points(stage.patches, job.options.radiosity.hemicube.resolution);
+    statistics.hemicubes = std::accumulate(points.begin(), points.end(), std::size_t{0});
     statistics.row_sums = row_sums(stage.patches, factors);
     statistics.reciprocity_error = reciprocity_error(stage.patches, factors);
     statistics.sweeps = solution.sweeps;

@@ -27,7 +27,8 @@ Frame turned(const Vec3& normal, float angle) {
 HemicubeView::HemicubeView(const Vec3& position, const Vec3& normal, float angle, float scale)
     : origin(off_surface(position, normal, scale)), frame(turned(normal, angle)) {}
 
-Hemicube::Hemicube(int resolution) : resolution_(resolution) {
+Hemicube::Hemicube(int resolution)
+    : resolution_(resolution), step_(2.0f / static_cast<float>(resolution)) {
   if (resolution < kResolutionStep || resolution % kResolutionStep != 0) {
     throw Error(fmt::format("a hemicube of {} pixels along its edge; it takes a multiple of {}",
                             resolution, kResolutionStep));
@@ -60,6 +61,18 @@ Hemicube::Hemicube(int resolution) : resolution_(resolution) {
   for (const double d : delta_) sum += d;
   discretisation_ = sum - 1.0;
   for (double& d : delta_) d /= sum;
+}
+
+Vec3 Hemicube::direction(const HemicubeView& view, std::size_t pixel) const {
+  Vec3 d = direction(pixel);
+  const Vec2 shift = step_ * view.shift;
+  if (d.z == 1.0f) {
+    d += Vec3(shift, 0.0f);
+  } else {
+    (std::abs(d.x) == 1.0f ? d.y : d.x) += shift.x;
+    d.z += shift.y;
+  }
+  return view.frame.to_world(d);
 }
 
 void Hemicube::draw(const Tracer& tracer, const HemicubeView& view, std::size_t packet,

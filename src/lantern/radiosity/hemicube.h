@@ -17,6 +17,7 @@ namespace lantern {
 struct HemicubeView {
   Vec3 origin;
   Frame frame;
+  Vec2 shift{0.0f};  // of what a pixel looks at from its centre, in pixels
 
   /// `normal` is unit length, `angle` in radians, `scale` the scene's largest coordinate.
   HemicubeView(const Vec3& position, const Vec3& normal, float angle, float scale);
@@ -39,15 +40,15 @@ class Hemicube {
   double discretisation() const { return discretisation_; }
   /// Through the centre of the pixel, about +z, not unit length.
   Vec3 direction(std::size_t pixel) const { return {x_[pixel], y_[pixel], z_[pixel]}; }
-  Vec3 direction(const HemicubeView& view, std::size_t pixel) const {
-    return view.frame.to_world(direction(pixel));
-  }
+  /// As the view turns and shifts it, in the world.
+  Vec3 direction(const HemicubeView& view, std::size_t pixel) const;
 
   /// What the sixteen pixels of a packet see.
   void draw(const Tracer& tracer, const HemicubeView& view, std::size_t packet, Hit* hits) const;
 
  private:
   int resolution_;
+  float step_;  // a pixel's edge
   double discretisation_ = 0.0;
   std::vector<float> x_, y_, z_;
   std::vector<double> delta_;

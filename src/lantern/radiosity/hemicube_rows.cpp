@@ -65,8 +65,11 @@ HemicubeRows::HemicubeRows(const World& world, const Tracer& tracer, const Patch
 
 HemicubeView HemicubeRows::view(std::uint32_t element, const glm::dvec3& position,
                                 std::uint64_t turn) const {
-  const float angle = 2.0f * kPi * to_unit_float(hash(seed_, element, turn));
-  return {Vec3(position), Vec3(patches_.element_normal(element)), angle, scale_};
+  const std::uint64_t key = hash(seed_, element, turn);
+  HemicubeView view(Vec3(position), Vec3(patches_.element_normal(element)),
+                    2.0f * kPi * to_unit_float(key), scale_);
+  view.shift = Vec2(to_unit_float(hash(key, 1)), to_unit_float(hash(key, 2))) - 0.5f;
+  return view;
 }
 
 HemicubeView HemicubeRows::view_from_centre(std::uint32_t element) const {

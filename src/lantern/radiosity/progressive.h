@@ -16,7 +16,7 @@
 namespace lantern {
 
 struct ProgressiveOptions {
-  double cutoff = 1e-3;  // shooting ends when no more than this share of the flux emitted is unshot
+  double cutoff = 1e-4;  // shooting ends when no more than this share of the flux emitted is unshot
   HemicubeOptions hemicube = {};
 };
 
