@@ -178,6 +178,7 @@ int main(int argc, char** argv) {
   std::string path;
   RenderOptions options;
   int size = 256, runs = 8, path_samples = 128, light_passes = 64, samples = 16;
+  options.radiosity.refinements = 2;
   std::vector<float> look_at;
   std::vector<std::string> only;
   app.add_option("scene", path)->required();
@@ -190,7 +191,7 @@ int main(int argc, char** argv) {
   app.add_option("--patches", options.radiosity.patches.count)->capture_default_str();
   app.add_option("--hemicube", options.radiosity.hemicube.resolution)->capture_default_str();
   app.add_option("--cutoff", options.radiosity.cutoff)->capture_default_str();
-  app.add_option("--refine", options.radiosity.refinements)->capture_default_str();
+  app.add_option("--refine", options.radiosity.refinements, "2");
   CLI11_PARSE(app, argc, argv);
   try {
     if (!look_at.empty()) {
