@@ -36,6 +36,10 @@ function(lantern_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE lantern_options lantern_test_support ${ARG_LINK})
+  if(LANTERN_SANITIZE)
+    # Sanitized, most of the time goes to compiling: what tests do themselves is little.
+    target_compile_options(${name} PRIVATE -O0)
+  endif()
   set(properties TIMEOUT 300 LABELS ${name})
   if(LANTERN_SANITIZE MATCHES thread)
     list(APPEND properties
