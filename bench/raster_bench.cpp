@@ -2,17 +2,20 @@
 // What a light costs by OpenGL at 640x480, in CPU time of the whole process (Mesa draws on the CPU)
 // and over that of one unshadowed, blended full-screen pass: the best of five runs, each of which
 // shades by the masks that it drew.
-//   raster_bench SCENE [--lights PATHS]
+//   raster_bench SCENE|balls [--lights PATHS]      balls: the tests' room of 64, 480 triangles each
 #include "lantern/gl/context.h"
 #include "lantern/lights/emitters.h"
 #include "lantern/lights/walk.h"
 #include "lantern/load/load.h"
 #include "lantern/pipeline/camera.h"
 #include "lantern/raster/raster_lights.h"
+#include "lantern/raster/shadow_maps.h"
 #include "lantern/raster/stencil_shadows.h"
 #include "lantern/raster/surfaces.h"
 #include "lantern/scene/surface.h"
 #include "lantern/trace/embree.h"
+
+#include "tests/raster/raster_scenes.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -72,7 +75,7 @@ int main(int argc, char** argv) {
   app.add_option("--lights", paths);
   CLI11_PARSE(app, argc, argv);
 
-  const Scene scene = load_scene(path).scene;
+  const Scene scene = path == "balls" ? test::room_of_balls(16, 16) : load_scene(path).scene;
   const World world = make_world(scene);
   const auto tracer = make_embree_tracer(scene, world);
   const Emitters emitters(scene, world);
@@ -92,8 +95,13 @@ int main(int argc, char** argv) {
                                {{"KIND", "0"}});
   const gl::Program shade(files, "shaders/full_screen.vert.glsl", "shaders/shade.frag.glsl",
                           {{"KIND", "0"}, {"MAPS", "0"}});
+  ShadowMaps maps(world, files, {});
+  const gl::Program shade_by_maps(files, "shaders/full_screen.vert.glsl", "shaders/shade.frag.glsl",
+                                  {{"KIND", "0"}, {"MAPS", "1"}, maps.definition()});
   unshadowed.set_block("Lights", 0);
   shade.set_block("Lights", 0);
+  shade_by_maps.set_block("Lights", 0);
+  ShadowMaps::prepare(shade_by_maps);
   const Surfaces surfaces(scene, world, files);
   StencilShadows shadows(world, files, VolumeMethod::kExact);
   StageTimes times;
@@ -149,6 +157,28 @@ int main(int argc, char** argv) {
       gl::draw_full_screen(none);
     }
   });
+  const double map_drawing = cost([&] {
+    maps.keep({});
+    for (const LightGroup& group : groups) maps.draw(group, times);
+  });
+  mask_framebuffer.bind();
+  const float all_seen[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+  glClearBufferfv(GL_COLOR, 0, all_seen);
+  const double map_shading = cost([&] {
+    for (const LightGroup& group : groups) {
+      with_block(group);
+      maps.draw(group, times);
+      maps.set_in(shade_by_maps, 4);
+      shade_by_maps.set("u_points", 0, g_buffer.points);
+      shade_by_maps.set("u_reflectances", 1, g_buffer.reflectances);
+      shade_by_maps.set("u_mask", 2, mask);
+      shade_by_maps.set("u_sum", 3, sum);
+      shade_by_maps.set("u_emissions", 6, g_buffer.emissions);
+      shade_by_maps.set("u_count", static_cast<int>(group.records.size()));
+      next_framebuffer.bind();
+      gl::draw_full_screen(none);
+    }
+  });
   const EdgeList list(world, find_walls(world));
   double edges = 0;
   const double preparing = cost([&] {
@@ -166,4 +196,6 @@ int main(int argc, char** argv) {
              preparing / count);
   fmt::print("shading              {:.3f}\n", (both - volumes) / count);
   fmt::print("stencil / unshadowed {:.2f}\n", both / blend);
+  fmt::print("maps, drawing        {:.3f}\n", map_drawing / count);
+  fmt::print("maps, shading        {:.3f}\n", map_shading / count);
 }
