@@ -95,14 +95,14 @@ int main(int argc, char** argv) {
                                {{"KIND", "0"}});
   const gl::Program shade(files, "shaders/full_screen.vert.glsl", "shaders/shade.frag.glsl",
                           {{"KIND", "0"}, {"MAPS", "0"}});
-  ShadowMaps maps(world, files, {});
+  const Surfaces surfaces(scene, world, files);
+  ShadowMaps maps(scene, world, surfaces, files, {});
   const gl::Program shade_by_maps(files, "shaders/full_screen.vert.glsl", "shaders/shade.frag.glsl",
-                                  {{"KIND", "0"}, {"MAPS", "1"}, maps.definition()});
+                                  {{"KIND", "0"}, {"MAPS", "1"}});
   unshadowed.set_block("Lights", 0);
   shade.set_block("Lights", 0);
   shade_by_maps.set_block("Lights", 0);
   ShadowMaps::prepare(shade_by_maps);
-  const Surfaces surfaces(scene, world, files);
   StencilShadows shadows(world, files, VolumeMethod::kExact);
   StageTimes times;
   GBuffer g_buffer(kWidth, kHeight);

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Which triangle a light sees through a texel of its map, and how far it is.
 #include "shaders/shadow_map.glsl"
+#if HOLES
+#include "shaders/opacity.glsl"
+in vec2 v_texcoord;
+in float v_alpha;
+#endif
 
 in float v_depth;
 flat in uint v_triangle;
@@ -13,5 +18,10 @@ layout(location = 0) out uvec2 o_texel;
 
 void main() {
   if (u_side * off_diamond(ivec2(gl_FragCoord.xy) - u_corner) > u_on) discard;
-  o_texel = uvec2(v_triangle + 1u, floatBitsToUint(v_depth));
+  uint number = v_triangle + 1u;
+#if HOLES
+  if (is_hole(v_triangle, ivec2(gl_FragCoord.xy) - u_corner, v_texcoord, v_alpha)) discard;
+  number |= kHoles;
+#endif
+  o_texel = uvec2(number, floatBitsToUint(v_depth));
 }

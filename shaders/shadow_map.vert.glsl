@@ -2,6 +2,12 @@
 // Triangles of the scene as a light sees them, into its shadow map.
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in uint a_triangle;
+#if HOLES
+layout(location = 2) in vec2 a_texcoord;
+layout(location = 3) in vec4 a_colour;
+out vec2 v_texcoord;
+out float v_alpha;
+#endif
 
 uniform vec3 u_origin;
 uniform mat4 u_clip;   // of positions relative to the origin
@@ -14,5 +20,9 @@ void main() {
   vec3 place = a_position - u_origin;
   v_depth = dot(u_depth, place);
   v_triangle = a_triangle;
+#if HOLES
+  v_texcoord = a_texcoord;
+  v_alpha = a_colour.a;
+#endif
   gl_Position = u_clip * vec4(place, 1.0);
 }

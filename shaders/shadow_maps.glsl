@@ -26,31 +26,31 @@ struct MapPoint {
 MapPoint find_in_map(int light, Point p, vec3 way) {
   LightMap map = u_maps[light];
   MapPoint found;
-  const float kSize = float(MAP_SIZE);
+  float across = float(u_map_size);
 #if KIND == 2
   vec2 at = vec2(dot(map.x.xyz, p.position) + map.x.w, dot(map.y.xyz, p.position) + map.y.w);
   found.depth = dot(map.z.xyz, p.position) + map.z.w;
   found.reach = sqrt(1.0 / dot(map.x.xyz, map.x.xyz) + 1.0 / dot(map.y.xyz, map.y.xyz)) *
-                (2.0 / kSize);
+                (2.0 / across);
 #else
   vec3 local = -vec3(dot(map.x.xyz, way), dot(map.y.xyz, way), dot(map.z.xyz, way));
   found.depth = abs(local.x) + abs(local.y) + abs(local.z);
   vec2 at = local.xy / found.depth;
 #if KIND == 0
   // The four texels around must be of this light's half.
-  at *= min(1.0, (1.0 - 4.0 / kSize) / max(abs(at.x) + abs(at.y), 0.5));
+  at *= min(1.0, (1.0 - 4.0 / across) / max(abs(at.x) + abs(at.y), 0.5));
 #endif
   if (local.z < 0.0) at = fold(at);
-  // A texel across and one up are (1, 1, -2) * 2 / MAP_SIZE on the octahedron.
-  found.reach = found.depth * (4.9 / kSize);
+  // A texel across and one up are (1, 1, -2) * 2 / u_map_size on the octahedron.
+  found.reach = found.depth * (4.9 / across);
 #endif
 #if KIND == 0
   int tile = light >> 1;
 #else
   int tile = light;
 #endif
-  found.corner = ivec2(tile % kMapsAcross, tile / kMapsAcross) * MAP_SIZE;
-  found.texel = (0.5 * at + 0.5) * kSize;
+  found.corner = ivec2(tile % kMapsAcross, tile / kMapsAcross) * u_map_size;
+  found.texel = (0.5 * at + 0.5) * across;
   return found;
 }
 
@@ -58,14 +58,14 @@ MapPoint find_in_map(int light, Point p, vec3 way) {
 ivec2 block_of(MapPoint at) { return ivec2(floor(at.texel - 0.5)); }
 
 bool is_at_border(ivec2 block) {
-  return min(block.x, block.y) < 0 || max(block.x, block.y) > MAP_SIZE - 2;
+  return min(block.x, block.y) < 0 || max(block.x, block.y) > u_map_size - 2;
 }
 
 /// Beyond its border an octahedron goes on at the same border, mirrored.
 ivec2 wrapped_texel(ivec2 texel) {
-  ivec2 inside = clamp(texel, ivec2(0), ivec2(MAP_SIZE - 1));
-  if (inside.x != texel.x) return ivec2(inside.x, MAP_SIZE - 1 - inside.y);
-  if (inside.y != texel.y) return ivec2(MAP_SIZE - 1 - inside.x, inside.y);
+  ivec2 inside = clamp(texel, ivec2(0), ivec2(u_map_size - 1));
+  if (inside.x != texel.x) return ivec2(inside.x, u_map_size - 1 - inside.y);
+  if (inside.y != texel.y) return ivec2(u_map_size - 1 - inside.x, inside.y);
   return inside;
 }
 
@@ -96,6 +96,8 @@ vec4 corner_of(uint triangle, int corner) {
   return texelFetch(u_triangles, ivec2(at % width, at / width), 0);
 }
 
+const int kNoSteps = 2;  // so many steps from a texel's triangle one goes no further
+
 /// What is left to ask of a light whose map does not tell by itself.
 struct Question {
   int texels;      // of the four around the point, the first in the lowest bit; -1: not known yet
@@ -116,16 +118,23 @@ bool is_in_way(inout Question open, int light, Point p, vec3 way, uint own) {
     }
   }
   uint number = open.triangle;
+  bool is_other_texel = false, is_nearest = false, has_holes = false;
   if (number == 0u) {
     int bit = open.texels & -open.texels;
     int i = bit == 8 ? 3 : bit >> 1;
     ivec2 texel = wrapped_texel(first + ivec2(i & 1, i >> 1));
-    number = texelFetch(u_map_texels, at.corner + texel, 0).x & kNumber;
+    uint seen = texelFetch(u_map_texels, at.corner + texel, 0).x;
+    number = seen & kNumber;
+    // What has holes stops what goes through this very texel.
+    is_nearest = texel == ivec2(floor(at.texel));
+    has_holes = (seen & kHoles) != 0u;
+    is_other_texel = has_holes && !is_nearest;
+    if (has_holes) open.steps = kNoSteps;
     open.texels ^= bit;
     open.steps = 0;
   }
   open.triangle = 0u;
-  if (number == own || number == 0u) return false;
+  if (number == own || number == 0u || is_other_texel) return false;
   vec4 a = corner_of(number - 1u, 0), b = corner_of(number - 1u, 1), c = corner_of(number - 1u, 2);
   vec3 ab = b.xyz - a.xyz, ac = c.xyz - a.xyz, from_a = p.position - a.xyz;
   vec3 across = cross(way, ac), turned = cross(from_a, ab);
@@ -136,10 +145,18 @@ bool is_in_way(inout Question open, int light, Point p, vec3 way, uint own) {
   // Rays along a shared edge must not slip through: rounding.
   const float kSeam = 1e-5;
   float least = min(v_of_a, min(v_of_b, v_of_c));
-  if (t <= 0.0 || (KIND != 2 && t >= 1.0)) return false;
-  if (least >= -kSeam) return true;
-  const int kSteps = 2;
-  if (open.steps < kSteps && volume != 0.0) {
+  bool is_before = t > 0.0 && (KIND == 2 || t < 1.0);
+  if (is_before && least >= -kSeam) return true;
+  // A triangle that is more slender than a texel stands for all that is like it around: it stops
+  // what goes through its texel, and so does one with holes.
+  vec3 bc = ac - ab, doubled_area = cross(ab, ac);
+  float longest = max(dot(ab, ab), max(dot(ac, ac), dot(bc, bc)));
+  float texel = 0.25 * at.reach;
+  bool is_slender = dot(doubled_area, doubled_area) < texel * texel * longest;
+  float slope = dot(way, way) / max(dot(p.geometric, way), 1e-6);
+  if (is_nearest && (is_slender || has_holes) && -dot(from_a, way) > at.reach * slope) return true;
+  if (!is_before) return false;
+  if (open.steps < kNoSteps && volume != 0.0) {
     open.triangle = uint(least == v_of_a ? b.w : least == v_of_b ? c.w : a.w);
     ++open.steps;
   }

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The surface that a pixel sees, as lantern/scene/surface.h says it: where it is (lifted off it, as
-// shadow rays start), its two normals on the side that is seen, what it reflects and emits.
+// shadow rays start), its two normals on the side that is seen, what it reflects and emits; with
+// HOLES where it lets the eye's ray through nothing.
 #include "shaders/octahedral.glsl"
 #include "shaders/texture.glsl"
+#if HOLES
+#include "shaders/opacity.glsl"
+uniform ivec2 u_first_pixel;  // column i, row j of the framebuffer: this + u_pixel_step * (i, j)
+uniform int u_pixel_step;
+#endif
 
 in vec3 v_position;
 flat in vec3 v_geometric_normal;
@@ -33,6 +39,10 @@ vec3 looked_up(sampler2D image, vec4 how) {
 }
 
 void main() {
+#if HOLES
+  ivec2 pixel = u_first_pixel + u_pixel_step * ivec2(gl_FragCoord.xy);
+  if (is_hole(v_triangle, pixel, v_texcoord, v_colour.a)) discard;
+#endif
   bool front = dot(v_geometric_normal, v_position - u_eye) < 0.0;
   vec3 geometric = v_geometric_normal;
   vec3 shading = geometric;

@@ -44,7 +44,7 @@ struct Maps {
   explicit Maps(const test::RasterStage& with, const ShadowMapOptions& options = {})
       : stage(with),
         surfaces(with.scene, with.world, files),
-        maps(with.world, files, options),
+        maps(with.scene, with.world, surfaces, files, options),
         by_maps(surfaces, {.volumes = nullptr, .maps = &maps}, times, files, kWidth, kHeight),
         unshadowed(surfaces, {}, times, files, kWidth, kHeight) {}
 
@@ -213,7 +213,7 @@ TEST_P(MapsTest, KeptMapsAreAsGoodAsNewOnes) {
   for (const LightGroup& group : groups) lights += group.records.size();
   for (std::size_t view = 1; view <= 3; ++view) {
     const Camera camera = random_cameras(stage.world.bounds, 3)[view - 1];
-    kept.maps.keep(groups);
+    kept.maps.keep(std::span(&groups, 1));
     EXPECT_EQ(kept.irradiance(kept.by_maps, camera, groups),
               fresh.irradiance(fresh.by_maps, camera, groups));
     EXPECT_EQ(kept.maps.drawn(), lights);

@@ -34,7 +34,8 @@ std::uint32_t place_on_curve(const Vec3& p, const Bounds& box) {
 
 }  // namespace
 
-std::vector<Cluster> make_clusters(const World& world, std::span<std::uint32_t> triangles) {
+std::vector<Cluster> make_clusters(const World& world, std::span<std::uint32_t> triangles,
+                                   std::uint32_t before) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> places;
   places.reserve(triangles.size());
   for (const std::uint32_t t : triangles) {
@@ -52,8 +53,8 @@ std::vector<Cluster> make_clusters(const World& world, std::span<std::uint32_t> 
         bounds.add(world.positions[world.triangles[t][corner]]);
       }
     }
-    clusters.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(run.size()),
-                        bounds.centre(), bounds.radius()});
+    clusters.push_back({before + static_cast<std::uint32_t>(first),
+                        static_cast<std::uint32_t>(run.size()), bounds.centre(), bounds.radius()});
   }
   return clusters;
 }

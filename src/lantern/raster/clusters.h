@@ -19,8 +19,9 @@ struct Cluster {
 };
 
 /// Brings the triangles into an order in which neighbours follow each other [Morton 1966] and cuts
-/// that into clusters.
-std::vector<Cluster> make_clusters(const World& world, std::span<std::uint32_t> triangles);
+/// that into clusters, of a longer order in which `first` others come before.
+std::vector<Cluster> make_clusters(const World& world, std::span<std::uint32_t> triangles,
+                                   std::uint32_t first = 0);
 
 /// Whether some of the cluster may lie on the positive side of all planes, its place taken from
 /// `origin`.

@@ -6,20 +6,16 @@
 #include <algorithm>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace lantern {
 namespace {
 
 constexpr GLuint kLightsBinding = 0;
 
-gl::Program shade_program(const gl::ShaderFiles& files, LightFormula formula,
-                          const ShadowMaps* maps) {
-  std::vector<gl::Definition> definitions = {{"KIND", std::to_string(static_cast<int>(formula))},
-                                             {"MAPS", maps ? "1" : "0"}};
-  if (maps) definitions.push_back(maps->definition());
-  gl::Program program(files, "shaders/full_screen.vert.glsl", "shaders/shade.frag.glsl",
-                      definitions);
+gl::Program shade_program(const gl::ShaderFiles& files, LightFormula formula, bool maps) {
+  gl::Program program(
+      files, "shaders/full_screen.vert.glsl", "shaders/shade.frag.glsl",
+      {{"KIND", std::to_string(static_cast<int>(formula))}, {"MAPS", maps ? "1" : "0"}});
   program.set_block("Lights", kLightsBinding);
   if (maps) ShadowMaps::prepare(program);
   return program;
@@ -35,9 +31,9 @@ Lighting::Lighting(const Surfaces& surfaces, const Shadows& shadows, StageTimes&
       g_buffer_(width, height),
       mask_(gl::Format::kRgba8, width, height),
       mask_framebuffer_({&mask_}, &g_buffer_.depth),
-      shade_{shade_program(files, LightFormula::kSurface, shadows.maps),
-             shade_program(files, LightFormula::kPunctual, shadows.maps),
-             shade_program(files, LightFormula::kDirectional, shadows.maps)},
+      shade_{shade_program(files, LightFormula::kSurface, shadows.maps != nullptr),
+             shade_program(files, LightFormula::kPunctual, shadows.maps != nullptr),
+             shade_program(files, LightFormula::kDirectional, shadows.maps != nullptr)},
       light_block_(std::span<const LightRecord>()),
       irradiance_{Target(gl::Format::kRgba32f, width, height),
                   Target(gl::Format::kRgba32f, width, height)} {}

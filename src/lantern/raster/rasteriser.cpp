@@ -22,14 +22,18 @@
 namespace lantern {
 namespace {
 
-void require_solid(const Scene& scene, const World& world) {
-  for (const MaterialId id : world.materials) {
-    const Material& material = scene.materials[index(id)];
-    if (!has_holes(material)) continue;
-    throw Error(
-        fmt::format("shadow volumes know no holes, and material '{}' has them: use --backend cpu",
-                    material.name));
+/// The world with those triangles alone that no ray passes through; nothing if that is all of them.
+std::optional<World> solid_part(const Scene& scene, const World& world) {
+  World solid = world;
+  solid.triangles.clear();
+  solid.materials.clear();
+  for (std::size_t t = 0; t < world.size(); ++t) {
+    if (has_holes(scene.materials[index(world.materials[t])])) continue;
+    solid.triangles.push_back(world.triangles[t]);
+    solid.materials.push_back(world.materials[t]);
   }
+  if (solid.size() == world.size()) return std::nullopt;
+  return solid;
 }
 
 VirtualLights subset(const VirtualLights& lights, std::span<const std::uint32_t> chosen) {
@@ -117,6 +121,7 @@ struct Rasteriser::State {
   gl::ShaderFiles files;
   StageTimes times;
   Surfaces surfaces;
+  std::optional<World> solid;  // where some of the world has holes
   std::optional<StencilShadows> volumes;
   std::optional<ShadowMaps> maps;
   std::optional<Lighting> lighting;
@@ -134,12 +139,20 @@ struct Rasteriser::State {
                      .radius = all.bounds.radius(),
                      .range = gl.has(gl::kClipControl) ? ClipRange::kFarIs0 : ClipRange::kFarIs1},
         surfaces(scene, all, files),
+        solid(solid_part(scene, all)),
         resolve(files, "shaders/full_screen.vert.glsl", "shaders/resolve.frag.glsl"),
         radiance(gl::Format::kRgba32f, with.width, with.height) {
-    if (with.shadows == ShadowMethod::kMaps) {
-      maps.emplace(all, files, ShadowMapOptions{.range = view_options.range});
-    } else {
-      volumes.emplace(all, files, method(with.volumes, gl));
+    const bool by_maps = with.shadows == ShadowMethod::kMaps;
+    const bool none_solid = solid && solid->triangles.empty();
+    if (!by_maps && !none_solid) {
+      volumes.emplace(all, files, method(with.volumes, gl), solid ? &*solid : nullptr);
+    }
+    // Volumes know triangles alone: of what has holes maps tell the shadows.
+    if (by_maps || solid) {
+      maps.emplace(
+          scene, all, surfaces, files,
+          ShadowMapOptions{.range = view_options.range,
+                           .casters = by_maps ? MapCasters::kAll : MapCasters::kWithHoles});
     }
     lighting.emplace(surfaces, Shadows{volumes ? &*volumes : nullptr, maps ? &*maps : nullptr},
                      times, files, view_options.columns(), view_options.rows());
@@ -212,7 +225,6 @@ struct Rasteriser::State {
 
 Rasteriser::Rasteriser(const Scene& scene, const World& world, const gl::Info& gl,
                        const RasterOptions& options) {
-  require_solid(scene, world);
   if (!gl.has(gl::kFloatTargets)) {
     throw Error("this OpenGL cannot draw into float textures; use --backend cpu");
   }
@@ -228,13 +240,16 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
   const RasterOptions& options = s.options;
   Image image(options.width, options.height);
   std::optional<VolumeView> volumes;
-  if (options.show_volumes) volumes.emplace(s.whole_g_buffer());
+  if (options.show_volumes) {
+    if (!s.volumes) throw Error("there are no shadow volumes to show: nothing solid casts any");
+    volumes.emplace(s.whole_g_buffer());
+  }
   std::size_t reported = 0;
   for (int sample = 0; sample < options.samples && !(sample > 0 && stop.load()); ++sample) {
     const std::size_t n =
         pass * static_cast<std::size_t>(options.samples) + static_cast<std::size_t>(sample);
     const auto groups = s.groups(lights, bounds, n);
-    if (s.maps) s.maps->keep(groups.front());
+    if (s.maps) s.maps->keep(groups);
     std::size_t steps = 0, step = 0;
     for (const auto& of_pixel : groups) steps += of_pixel.size();
     s.draw(camera, groups, n, [&] {

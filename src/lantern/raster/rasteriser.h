@@ -38,8 +38,7 @@ struct RasterOptions {
 
 class Rasteriser {
  public:
-  /// Keeps references to `scene` and `world`. Throws Error for what volumes cannot do (casters with
-  /// holes) and where GL lacks what is needed.
+  /// Keeps references to `scene` and `world`. Throws Error where GL lacks what is needed.
   Rasteriser(const Scene& scene, const World& world, const gl::Info& gl,
              const RasterOptions& options);
   ~Rasteriser();

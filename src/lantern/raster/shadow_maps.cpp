@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/raster/shadow_maps.h"
 
+#include "lantern/core/hash.h"
 #include "lantern/gl/check.h"
 #include "lantern/raster/draw_state.h"
+#include "lantern/raster/triangle_texture.h"
+#include "lantern/scene/surface.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <numeric>
 #include <string>
-#include <tuple>
+#include <utility>
 
 namespace lantern {
 namespace {
@@ -19,19 +21,16 @@ constexpr GLuint kFramesBinding = 1;
 constexpr std::size_t kTexelBytes = 2 * sizeof(std::uint32_t);
 constexpr int kMapsAcross = 4;  // as in shaders/shadow_maps.glsl
 
-std::vector<std::uint32_t> all_triangles(const World& world) {
-  std::vector<std::uint32_t> order(world.size());
-  std::iota(order.begin(), order.end(), 0u);
-  return order;
-}
-
-gl::Buffer positions_of(const World& world, std::span<const std::uint32_t> order) {
-  std::vector<Vec3> corners;
+/// A value for each corner of the triangles in this order, from one of the world's arrays.
+template <typename T>
+gl::Buffer by_corner(const World& world, std::span<const std::uint32_t> order,
+                     const std::vector<T>& values) {
+  std::vector<T> corners;
   corners.reserve(3 * order.size());
   for (const std::uint32_t t : order) {
-    for (int i = 0; i < 3; ++i) corners.push_back(world.positions[world.triangles[t][i]]);
+    for (int i = 0; i < 3; ++i) corners.push_back(values[world.triangles[t][i]]);
   }
-  return gl::Buffer(std::span<const Vec3>(corners));
+  return gl::Buffer(std::span<const T>(corners));
 }
 
 gl::Buffer numbers_of(std::span<const std::uint32_t> order) {
@@ -41,64 +40,20 @@ gl::Buffer numbers_of(std::span<const std::uint32_t> order) {
   return gl::Buffer(std::span<const std::uint32_t>(corners));
 }
 
-/// Of each triangle and edge (from its corner of this number to the next) a triangle that shares
-/// it, by its number and 1; 0 where there is none.
-std::vector<std::array<std::uint32_t, 3>> neighbours(const World& world) {
-  struct Side {
-    std::array<float, 6> edge;  // its ends, the smaller first
-    std::uint32_t triangle;
-    int corner;
-  };
-  std::vector<Side> sides;
-  sides.reserve(3 * world.size());
-  for (std::uint32_t t = 0; t < world.size(); ++t) {
-    for (int i = 0; i < 3; ++i) {
-      const Vec3 a = world.positions[world.triangles[t][i]];
-      const Vec3 b = world.positions[world.triangles[t][(i + 1) % 3]];
-      const std::array<float, 3> from = {a.x, a.y, a.z}, to = {b.x, b.y, b.z};
-      const auto [low, high] = std::minmax(from, to);
-      sides.push_back({{low[0], low[1], low[2], high[0], high[1], high[2]}, t, i});
-    }
+constexpr GLuint kPosition = 0, kNumber = 1, kTexcoord = 2, kColour = 3;
+
+/// Each light's holes are its own.
+std::uint32_t seed_of(const MapFrame& frame) {
+  std::uint64_t seed = 0;
+  for (const Vec4& row : {frame.x, frame.y, frame.z}) {
+    for (int i = 0; i < 4; ++i) seed = hash(seed, std::bit_cast<std::uint32_t>(row[i]));
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.edge, a.triangle, a.corner) < std::tie(b.edge, b.triangle, b.corner);
-  });
-  std::vector<std::array<std::uint32_t, 3>> result(world.size());
-  for (std::size_t first = 0; first < sides.size();) {
-    std::size_t end = first + 1;
-    while (end < sides.size() && sides[end].edge == sides[first].edge) ++end;
-    for (std::size_t i = first; i < end; ++i) {
-      const Side& next = sides[i + 1 < end ? i + 1 : first];
-      if (next.triangle == sides[i].triangle) continue;
-      result[sides[i].triangle][static_cast<std::size_t>(sides[i].corner)] = next.triangle + 1;
-    }
-    first = end;
-  }
-  return result;
+  return static_cast<std::uint32_t>(seed);
 }
 
-/// The world's triangles as a texture: three texels each, in a picture that is about square.
-gl::Texture triangle_texture(const World& world) {
-  const std::vector<std::array<std::uint32_t, 3>> beyond = neighbours(world);
-  const std::size_t texels = 3 * world.size();
-  const auto root = static_cast<std::size_t>(std::sqrt(static_cast<double>(texels)));
-  const std::size_t width = std::bit_ceil(root + 1);
-  const std::size_t height = (texels + width - 1) / width;
-  std::vector<float> rgba;
-  rgba.reserve(4 * width * height);
-  // Floats count no further.
-  constexpr std::uint32_t kCounted = 1u << 24;
-  for (std::size_t t = 0; t < world.size(); ++t) {
-    for (int i = 0; i < 3; ++i) {
-      const Vec3 p = world.positions[world.triangles[t][i]];
-      const std::uint32_t next = beyond[t][static_cast<std::size_t>(i)];
-      rgba.insert(rgba.end(), {p.x, p.y, p.z, next < kCounted ? static_cast<float>(next) : 0.0f});
-    }
-  }
-  rgba.resize(4 * width * height);
-  gl::Texture texture(gl::Format::kRgba32f, static_cast<int>(width), static_cast<int>(height));
-  texture.write<float>(rgba);
-  return texture;
+gl::Program caster_program(const gl::ShaderFiles& files, bool holes) {
+  return gl::Program(files, "shaders/shadow_map.vert.glsl", "shaders/shadow_map.frag.glsl",
+                     {{"HOLES", holes ? "1" : "0"}});
 }
 
 int rows_of(const LightGroup& group) {
@@ -117,42 +72,85 @@ ShadowMaps::Unfinished::Unfinished(int width, int height)
       depth(gl::Format::kDepth32f, width, height),
       framebuffer({&texels}, &depth) {}
 
-ShadowMaps::ShadowMaps(const World& world, const gl::ShaderFiles& files,
-                       const ShadowMapOptions& options)
+ShadowMaps::Casters ShadowMaps::casters_of(const Scene& scene, const World& world,
+                                           MapCasters which) {
+  const auto material = [&](std::uint32_t t) { return index(world.materials[t]); };
+  const auto holes = [&](std::uint32_t t) { return has_holes(scene.materials[material(t)]); };
+  Casters casters;
+  for (std::uint32_t t = 0; t < world.size(); ++t) {
+    if (which == MapCasters::kAll || holes(t)) casters.order.push_back(t);
+  }
+  const auto batch = [&](std::uint32_t t) { return holes(t) ? material(t) + 1 : 0; };
+  std::stable_sort(casters.order.begin(), casters.order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return batch(a) < batch(b); });
+  for (std::size_t first = 0; first < casters.order.size();) {
+    std::size_t end = first;
+    while (end < casters.order.size() && batch(casters.order[end]) == batch(casters.order[first])) {
+      ++end;
+    }
+    Batch& added = casters.batches.emplace_back();
+    if (holes(casters.order[first])) added.material_with_holes = material(casters.order[first]);
+    added.clusters = make_clusters(world, std::span(casters.order).subspan(first, end - first),
+                                   static_cast<std::uint32_t>(first));
+    first = end;
+  }
+  return casters;
+}
+
+ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& surfaces,
+                       const gl::ShaderFiles& files, const ShadowMapOptions& options)
     : bounds_(world.bounds),
       options_(options),
-      triangles_program_(files, "shaders/shadow_map.vert.glsl", "shaders/shadow_map.frag.glsl",
-                         {definition()}),
-      blocks_program_(files, "shaders/full_screen.vert.glsl", "shaders/shadow_map_blocks.frag.glsl",
-                      {definition()}),
-      order_(all_triangles(world)),
-      clusters_(make_clusters(world, order_)),
-      positions_(positions_of(world, order_)),
-      numbers_(numbers_of(order_)),
+      surfaces_(surfaces),
+      solid_(caster_program(files, false)),
+      with_holes_(caster_program(files, true)),
+      blocks_(files, "shaders/full_screen.vert.glsl", "shaders/shadow_map_blocks.frag.glsl"),
+      casters_(casters_of(scene, world, options.casters)),
       indices_(std::span<const std::uint32_t>()),
       frames_(std::span<const MapFrame>()),
-      array_({{.location = 0, .buffer = &positions_},
-              {.location = 1, .buffer = &numbers_, .channels = 1, .integer = true}},
-             &indices_),
-      triangles_(triangle_texture(world)) {}
+      array_({}, &indices_),
+      triangles_(triangle_texture(scene, world)) {
+  attributes_.reserve(4);
+  const auto add = [&](gl::Buffer buffer, GLuint location, int channels, bool integer = false) {
+    attributes_.push_back(std::move(buffer));
+    array_.add({location, &attributes_.back(), channels, integer});
+  };
+  add(by_corner(world, casters_.order, world.positions), kPosition, 3);
+  add(numbers_of(casters_.order), kNumber, 1, true);
+  const bool any_holes =
+      std::any_of(casters_.batches.begin(), casters_.batches.end(),
+                  [](const Batch& batch) { return batch.material_with_holes.has_value(); });
+  if (!any_holes) return;
+  if (!world.texcoords.empty()) {
+    add(by_corner(world, casters_.order, world.texcoords), kTexcoord, 2);
+  }
+  if (!world.colours.empty()) add(by_corner(world, casters_.order, world.colours), kColour, 4);
+}
 
-gl::Definition ShadowMaps::definition() const {
-  return {"MAP_SIZE", std::to_string(options_.size)};
+/// All of the scene is in a picture from infinity, near things too.
+int ShadowMaps::size_of(LightFormula formula) const {
+  return formula == LightFormula::kDirectional ? 2 * options_.size : options_.size;
 }
 
 void ShadowMaps::prepare(const gl::Program& program) {
   program.set_block("LightMaps", kFramesBinding);
 }
 
-bool ShadowMaps::are_of(const Maps& maps, const LightGroup& group) const {
-  return maps.formula == group.formula && maps.frames.size() == group.records.size() &&
-         maps.frames == map_frames(group, bounds_, options_.size);
+bool ShadowMaps::are_of(const Maps& maps, const LightGroup& group) {
+  const auto same_place = [](const LightRecord& a, const LightRecord& b) {
+    return Vec3(a.place) == Vec3(b.place) && Vec3(a.axis) == Vec3(b.axis);
+  };
+  return maps.formula == group.formula &&
+         std::equal(maps.lights.begin(), maps.lights.end(), group.records.begin(),
+                    group.records.end(), same_place);
 }
 
-void ShadowMaps::keep(std::span<const LightGroup> groups) {
+void ShadowMaps::keep(std::span<const std::vector<LightGroup>> groups) {
   std::erase_if(kept_, [&](const Maps& maps) {
-    return std::none_of(groups.begin(), groups.end(),
-                        [&](const LightGroup& group) { return are_of(maps, group); });
+    return std::none_of(groups.begin(), groups.end(), [&](const std::vector<LightGroup>& of_view) {
+      return std::any_of(of_view.begin(), of_view.end(),
+                         [&](const LightGroup& group) { return are_of(maps, group); });
+    });
   });
 }
 
@@ -172,9 +170,10 @@ void ShadowMaps::draw(const LightGroup& group, StageTimes& times) {
     kept_.splice(kept_.end(), kept_, found);
     return;
   }
-  const int width = kMapsAcross * options_.size, height = rows_of(group) * options_.size;
+  const int size = size_of(group.formula);
+  const int width = kMapsAcross * size, height = rows_of(group) * size;
   make_room(kTexelBytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  kept_.push_back({group.formula, map_frames(group, bounds_, options_.size),
+  kept_.push_back({group.formula, group.records, map_frames(group, bounds_, size),
                    gl::Texture(gl::Format::kRg32ui, width, height)});
   times.begin(Stage::kMaps);
   draw(kept_.back());
@@ -183,7 +182,8 @@ void ShadowMaps::draw(const LightGroup& group, StageTimes& times) {
 
 void ShadowMaps::draw(const Maps& maps) {
   const int width = maps.texels.width(), height = maps.texels.height();
-  const Unfinished& unfinished = unfinished_.try_emplace(height, width, height).first->second;
+  const Unfinished& unfinished =
+      unfinished_.try_emplace({width, height}, width, height).first->second;
   unfinished.framebuffer.bind();
   View view{};
   view.near_is_1 = options_.range == ClipRange::kFarIs0;
@@ -198,46 +198,58 @@ void ShadowMaps::draw(const Maps& maps) {
 
   const gl::Framebuffer finished({&maps.texels});
   finished.bind();
-  blocks_program_.set("u_texels", 0, unfinished.texels);
-  blocks_program_.set("u_halves", maps.formula == LightFormula::kSurface ? 1 : 0);
+  blocks_.set("u_texels", 0, unfinished.texels);
+  blocks_.set("u_map_size", size_of(maps.formula));
+  blocks_.set("u_halves", maps.formula == LightFormula::kSurface ? 1 : 0);
   gl::draw_full_screen(no_vertices_);
   gl::check("drawing shadow maps");
 }
 
 void ShadowMaps::draw_light(const Maps& maps, std::size_t light) {
+  const int size = size_of(maps.formula);
   const MapPlace place = map_place(maps.formula, light);
-  const std::vector<MapFace> faces = map_faces(maps.frames[light], maps.formula, place.half,
-                                               bounds_, options_.size, options_.range);
+  const std::vector<MapFace> faces =
+      map_faces(maps.frames[light], maps.formula, place.half, bounds_, size, options_.range);
   std::vector<std::uint32_t> indices;
-  std::vector<std::size_t> ends;
-  for (const MapFace& face : faces) {
-    for (const Cluster& cluster : clusters_) {
-      if (!may_lie_inside(cluster, face.origin, face.planes)) continue;
-      const std::size_t first = indices.size();
-      indices.resize(first + 3 * cluster.count);
-      std::iota(indices.begin() + static_cast<std::ptrdiff_t>(first), indices.end(),
-                3 * cluster.first);
+  std::vector<std::size_t> ends;  // of each face's part of each batch
+  for (const Batch& batch : casters_.batches) {
+    for (const MapFace& face : faces) {
+      for (const Cluster& cluster : batch.clusters) {
+        if (!may_lie_inside(cluster, face.origin, face.planes)) continue;
+        const std::size_t first = indices.size();
+        indices.resize(first + 3 * cluster.count);
+        std::iota(indices.begin() + static_cast<std::ptrdiff_t>(first), indices.end(),
+                  3 * cluster.first);
+      }
+      ends.push_back(indices.size());
     }
-    ends.push_back(indices.size());
   }
   indices_.write(std::span<const std::uint32_t>(indices));
   array_.bind();
-  const glm::ivec2 corner =
-      glm::ivec2(place.tile % kMapsAcross, place.tile / kMapsAcross) * options_.size;
-  triangles_program_.set("u_corner", corner);
-  // Of two lights in a map neither has the diamond between them.
-  triangles_program_.set("u_on", place.half == MapHalf::kWhole ? 0 : -1);
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const MapFace& face = faces[i];
-    triangles_program_.set("u_origin", face.origin);
-    triangles_program_.set("u_side", face.side);
-    triangles_program_.set("u_clip", face.clip);
-    triangles_program_.set("u_depth", face.depth);
-    glViewport(corner.x + face.x, corner.y + face.y, face.size, face.size);
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(ends[i] - first), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(first * sizeof(std::uint32_t)));
-    first = ends[i];
+  glVertexAttrib4f(kColour, 1.0f, 1.0f, 1.0f, 1.0f);
+  const glm::ivec2 corner = glm::ivec2(place.tile % kMapsAcross, place.tile / kMapsAcross) * size;
+  std::size_t first = 0, part = 0;
+  for (const Batch& batch : casters_.batches) {
+    const gl::Program& program = batch.material_with_holes ? with_holes_ : solid_;
+    if (batch.material_with_holes) {
+      surfaces_.set_opacity(program, *batch.material_with_holes, 0);
+      program.set("u_seed", seed_of(maps.frames[light]));
+    }
+    program.set("u_map_size", size);
+    program.set("u_corner", corner);
+    // Of two lights in a map neither has the diamond between them.
+    program.set("u_on", place.half == MapHalf::kWhole ? 0 : -1);
+    for (const MapFace& face : faces) {
+      program.set("u_origin", face.origin);
+      program.set("u_side", face.side);
+      program.set("u_clip", face.clip);
+      program.set("u_depth", face.depth);
+      glViewport(corner.x + face.x, corner.y + face.y, face.size, face.size);
+      const std::size_t end = ends[part++];
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(end - first), GL_UNSIGNED_INT,
+                     reinterpret_cast<const void*>(first * sizeof(std::uint32_t)));
+      first = end;
+    }
   }
 }
 
@@ -248,6 +260,7 @@ void ShadowMaps::set_in(const gl::Program& program, int unit) {
   frames_.write(std::span<const MapFrame>(frames));
   frames_.bind_as_uniforms(kFramesBinding);
   program.set("u_map_texels", unit, maps.texels);
+  program.set("u_map_size", size_of(maps.formula));
   program.set("u_triangles", unit + 1, triangles_);
 }
 

@@ -10,36 +10,44 @@
 #include "lantern/raster/map_faces.h"
 #include "lantern/raster/raster_lights.h"
 #include "lantern/raster/stage_times.h"
+#include "lantern/raster/surfaces.h"
+#include "lantern/scene/scene.h"
 #include "lantern/scene/world.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <list>
 #include <map>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace lantern {
 
+enum class MapCasters { kAll, kWithHoles };  // kWithHoles: those whose material has_holes()
+
 struct ShadowMapOptions {
-  int size = 256;                    // texels a side of an octahedron, even
+  int size = 256;  // texels a side of an octahedron, a power of two; from infinity twice that
   std::size_t bytes = 256ull << 20;  // that maps may take; the group in use always has its own
   ClipRange range = ClipRange::kFarIs0;
+  MapCasters casters = MapCasters::kAll;
 };
 
 class ShadowMaps {
  public:
-  ShadowMaps(const World& world, const gl::ShaderFiles& files, const ShadowMapOptions& options);
+  /// Keeps a reference to `surfaces`, which were made of these.
+  ShadowMaps(const Scene& scene, const World& world, const Surfaces& surfaces,
+             const gl::ShaderFiles& files, const ShadowMapOptions& options);
 
-  /// Forgets the maps of all lights but these.
-  void keep(std::span<const LightGroup> groups);
+  /// Forgets the maps of all lights but these, the groups of one or several views.
+  void keep(std::span<const std::vector<LightGroup>> groups);
   /// Draws the group's maps unless they are there still.
   void draw(const LightGroup& group, StageTimes& times);
   /// The maps of the group that was drawn last, on two texture units from `unit` on.
   void set_in(const gl::Program& program, int unit);
 
-  /// What a program with shaders/shadow_maps.glsl is made with, and what it then needs once.
-  gl::Definition definition() const;
+  /// What a program with shaders/shadow_maps.glsl needs once.
   static void prepare(const gl::Program& program);
 
   /// Lights whose maps were drawn so far.
@@ -48,6 +56,7 @@ class ShadowMaps {
  private:
   struct Maps {
     LightFormula formula;
+    std::vector<LightRecord> lights;
     std::vector<MapFrame> frames;
     gl::Texture texels;
   };
@@ -59,20 +68,33 @@ class ShadowMaps {
     Unfinished(int width, int height);
   };
 
-  bool are_of(const Maps& maps, const LightGroup& group) const;
+  /// Casters that are drawn with the same uniforms: the solid ones, or those of a material.
+  struct Batch {
+    std::optional<std::size_t> material_with_holes;
+    std::vector<Cluster> clusters;  // of the order of all casters
+  };
+  struct Casters {
+    std::vector<std::uint32_t> order;  // of the world's triangles
+    std::vector<Batch> batches;
+  };
+  static Casters casters_of(const Scene& scene, const World& world, MapCasters which);
+
+  int size_of(LightFormula formula) const;
+  static bool are_of(const Maps& maps, const LightGroup& group);
   void make_room(std::size_t bytes);
   void draw(const Maps& maps);
   void draw_light(const Maps& maps, std::size_t light);
 
   Bounds bounds_;
   ShadowMapOptions options_;
-  gl::Program triangles_program_, blocks_program_;
-  std::vector<std::uint32_t> order_;  // of the world's triangles
-  std::vector<Cluster> clusters_;     // of that order
-  gl::Buffer positions_, numbers_, indices_, frames_;
+  const Surfaces& surfaces_;
+  gl::Program solid_, with_holes_, blocks_;
+  Casters casters_;
+  std::vector<gl::Buffer> attributes_;
+  gl::Buffer indices_, frames_;
   gl::VertexArray array_;
   gl::Texture triangles_;
-  std::map<int, Unfinished> unfinished_;  // by height
+  std::map<std::pair<int, int>, Unfinished> unfinished_;  // by size
   gl::VertexArray no_vertices_;
   std::list<Maps> kept_;  // the one that was used last is the last
   std::size_t drawn_ = 0;

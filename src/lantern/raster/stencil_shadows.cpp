@@ -67,14 +67,15 @@ struct Pieces {
 }  // namespace
 
 StencilShadows::StencilShadows(const World& world, const gl::ShaderFiles& files,
-                               VolumeMethod method)
+                               VolumeMethod method, const World* casters)
     : world_(world),
+      casters_(casters ? *casters : world),
       method_(method),
       volume_(files, "shaders/shadow_volume.vert.glsl", "shaders/nothing.frag.glsl"),
       sides_(files, "shaders/shadow_volume.vert.glsl", "shaders/volume_sides.frag.glsl"),
       take_(files, "shaders/full_screen.vert.glsl", "shaders/constant.frag.glsl"),
       all_walls_(find_walls(world)),
-      whole_(world),
+      whole_(casters_),
       vertices_(std::span<const Vec3>(doubled(whole_.vertices()))),
       indices_(std::span<const std::uint32_t>()),
       array_({{.location = 0, .buffer = &vertices_}}, &indices_) {}
@@ -86,7 +87,7 @@ void StencilShadows::choose_walls(const Vec3& eye) {
   }
   if (inside_ && walls == walls_) return;
   walls_ = std::move(walls);
-  inside_.emplace(world_, walls_);
+  inside_.emplace(casters_, walls_);
 }
 
 StencilShadows::Prepared StencilShadows::prepare(const LightPoint& light, const Vec3& eye) const {

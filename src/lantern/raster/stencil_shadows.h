@@ -19,7 +19,9 @@ namespace lantern {
 
 class StencilShadows {
  public:
-  StencilShadows(const World& world, const gl::ShaderFiles& files, VolumeMethod method);
+  /// Keeps references. `casters`: those of the world's triangles that cast shadows; none: all.
+  StencilShadows(const World& world, const gl::ShaderFiles& files, VolumeMethod method,
+                 const World* casters = nullptr);
 
   /// Bit i of `mask` (RGBA8, the lowest byte in red): whether lights[i], of 32 at most, is seen.
   /// `framebuffer` draws into it with the depth and stencil of a G-buffer that was drawn with the
@@ -43,6 +45,7 @@ class StencilShadows {
   void take(std::size_t light, int reference, const View& view) const;
 
   const World& world_;
+  const World& casters_;
   VolumeMethod method_;
   gl::Program volume_, sides_, take_;
   gl::VertexArray no_vertices_;

@@ -3,6 +3,7 @@
 
 #include "lantern/gl/check.h"
 #include "lantern/raster/draw_state.h"
+#include "lantern/scene/surface.h"
 #include "lantern/trace/tracer.h"
 
 #include <algorithm>
@@ -70,7 +71,9 @@ GBuffer::GBuffer(int width, int height)
 Surfaces::Surfaces(const Scene& scene, const World& world, const gl::ShaderFiles& files)
     : scene_(scene),
       lift_(glm::length(off_surface(Vec3(0.0f), Vec3(1.0f, 0.0f, 0.0f), world.coordinate_scale()))),
-      surface_(files, "shaders/surface.vert.glsl", "shaders/surface.frag.glsl"),
+      surface_(files, "shaders/surface.vert.glsl", "shaders/surface.frag.glsl", {{"HOLES", "0"}}),
+      surface_with_holes_(files, "shaders/surface.vert.glsl", "shaders/surface.frag.glsl",
+                          {{"HOLES", "1"}}),
       sky_(files, "shaders/full_screen.vert.glsl", "shaders/sky.frag.glsl"),
       no_texture_(gl::Format::kRgba8, 1, 1) {
   const auto use = [&](const std::optional<TextureId>& id) {
@@ -135,6 +138,21 @@ void Surfaces::set_look_up(const gl::Program& program, const char* sampler, cons
                         texture.linear.empty() ? 1.0f : 0.0f, 1.0f));
 }
 
+void Surfaces::set_opacity(const gl::Program& program, std::size_t id, int unit) const {
+  const Material& material = scene_.materials[id];
+  program.set("u_opacity", material.opacity);
+  program.set("u_cutoff", material.alpha_cutoff.value_or(-1.0f));
+  program.set("u_opacity_colours", material.vertex_colours ? 1 : 0);
+  set_look_up(program, "u_opacity_texture", "u_opacity_look_up", unit,
+              material.reflectance_texture);
+}
+
+void Surfaces::set_view(const gl::Program& program, const View& view) const {
+  program.set("u_eye", view.eye);
+  program.set("u_clip", view.clip);
+  program.set("u_lift", lift_);
+}
+
 void Surfaces::draw(const View& view, const GBuffer& target) const {
   target.framebuffer.bind();
   apply({.depth = DepthUse::kDraw}, view);
@@ -150,22 +168,28 @@ void Surfaces::draw(const View& view, const GBuffer& target) const {
   gl::draw_full_screen(no_vertices_);
 
   apply({.depth = DepthUse::kDraw}, view);
-  surface_.set("u_eye", view.eye);
-  surface_.set("u_clip", view.clip);
-  surface_.set("u_lift", lift_);
+  set_view(surface_, view);
   vertices_->bind();
   // What the vertices do not have: no normal of their own, white.
   glVertexAttrib3f(kNormal, 0.0f, 0.0f, 0.0f);
   glVertexAttrib4f(kColour, 1.0f, 1.0f, 1.0f, 1.0f);
   for (const Batch& batch : batches_) {
     const Material& material = scene_.materials[batch.material];
-    surface_.set("u_reflectance", material.reflectance);
-    surface_.set("u_emission", material.emission);
-    surface_.set("u_double_sided", material.double_sided ? 1 : 0);
-    surface_.set("u_vertex_colours", material.vertex_colours ? 1 : 0);
-    set_look_up(surface_, "u_reflectance_texture", "u_reflectance_look_up", 0,
+    const gl::Program& program = has_holes(material) ? surface_with_holes_ : surface_;
+    if (has_holes(material)) {
+      set_view(program, view);
+      set_opacity(program, batch.material, 2);
+      program.set("u_seed", view.seed);
+      program.set("u_first_pixel", view.first);
+      program.set("u_pixel_step", view.step);
+    }
+    program.set("u_reflectance", material.reflectance);
+    program.set("u_emission", material.emission);
+    program.set("u_double_sided", material.double_sided ? 1 : 0);
+    program.set("u_vertex_colours", material.vertex_colours ? 1 : 0);
+    set_look_up(program, "u_reflectance_texture", "u_reflectance_look_up", 0,
                 material.reflectance_texture);
-    set_look_up(surface_, "u_emission_texture", "u_emission_look_up", 1, material.emission_texture);
+    set_look_up(program, "u_emission_texture", "u_emission_look_up", 1, material.emission_texture);
     glDrawArrays(GL_TRIANGLES, batch.first, batch.count);
   }
   reset_draw_state();

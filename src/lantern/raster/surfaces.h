@@ -33,19 +33,23 @@ class Surfaces {
   /// All of it, with the sky behind; the stencil becomes 0.
   void draw(const View& view, const GBuffer& target) const;
 
+  /// The uniforms of shaders/opacity.glsl for this material, on a texture unit.
+  void set_opacity(const gl::Program& program, std::size_t material, int unit) const;
+
  private:
   struct Batch {
     std::size_t material;
     GLint first;
     GLsizei count;
   };
+  void set_view(const gl::Program& program, const View& view) const;
   /// A texture on a unit and how it is looked up.
   void set_look_up(const gl::Program& program, const char* sampler, const char* how, int unit,
                    const std::optional<TextureId>& texture) const;
 
   const Scene& scene_;
   float lift_;
-  gl::Program surface_, sky_;
+  gl::Program surface_, surface_with_holes_, sky_;
   std::map<TextureId, gl::Texture> textures_;
   gl::Texture no_texture_;
   std::vector<gl::Buffer> buffers_;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/raster/view.h"
 
+#include "lantern/core/hash.h"
 #include "lantern/trace/eye.h"
 
+#include <bit>
 #include <cmath>
 
 namespace lantern {
@@ -34,7 +36,11 @@ View make_view(const Camera& camera, const ViewOptions& options) {
           near_is_1,
           eye.direction(first.x, first.y),
           (eye.direction(1.0f, 0.0f) - corner) * step,
-          (eye.direction(0.0f, 1.0f) - corner) * step};
+          (eye.direction(0.0f, 1.0f) - corner) * step,
+          options.first,
+          options.step,
+          static_cast<std::uint32_t>(hash(std::bit_cast<std::uint32_t>(options.offset.x),
+                                          std::bit_cast<std::uint32_t>(options.offset.y)))};
 }
 
 }  // namespace lantern

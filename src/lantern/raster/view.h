@@ -6,6 +6,8 @@
 
 #include "lantern/scene/scene.h"
 
+#include <cstdint>
+
 namespace lantern {
 
 /// Which depths the projection makes. Floats are dense around 0: with the far end there depth is
@@ -31,6 +33,9 @@ struct View {
   Mat4 clip;                    // of (position relative to the eye, 1) or (direction, 0)
   bool near_is_1;               // else near is depth 0
   Vec3 corner, step_x, step_y;  // ray of column i, row j: corner + i step_x + j step_y
+  glm::ivec2 first;             // pixel of the picture: first + step * (i, j)
+  int step;
+  std::uint32_t seed;  // of random numbers that only what shares its place in the pixel shares
 };
 
 View make_view(const Camera& camera, const ViewOptions& options);
