@@ -7,6 +7,7 @@ uniform vec3 origin;
 uniform mat3 to_local;  // the hemicube's z is the shooter's normal
 uniform int face;       // 0 the top, then +x, -x, +y, -y
 uniform float near;
+uniform vec2 shift;  // on the cube, of what pixels see from their centres
 uniform sampler2D planes;  // of the triangles: dot(xyz, x) + w = 0
 
 flat out uint item;  // 0 is nothing
@@ -20,10 +21,11 @@ void main() {
   item = uint(triangle) + 1u + (dead ? 0x80000000u : 0u);
   vec3 p = to_local * (position - origin);
   if (face == 0) {
-    gl_Position = vec4(p.x, p.y, p.z - 2.0 * near, p.z);
+    gl_Position = vec4(p.xy - shift * p.z, p.z - 2.0 * near, p.z);
   } else {
     float away = face < 3 ? p.x : p.y;
     float w = (face & 1) == 1 ? away : -away;
-    gl_Position = vec4(face < 3 ? p.y : p.x, 2.0 * p.z - w, w - 2.0 * near, w);
+    float u = face < 3 ? p.y : p.x;
+    gl_Position = vec4(u - shift.x * w, 2.0 * (p.z - shift.y * w) - w, w - 2.0 * near, w);
   }
 }

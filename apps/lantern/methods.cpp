@@ -63,7 +63,7 @@ const std::vector<SpecialOption>& special_options() {
       {"--deal-lights", {Method::kInstantRadiosity}},
       {"--volumes", {Method::kInstantRadiosity}},
       {"--show-volumes", {Method::kInstantRadiosity}},
-      {"--gl-device", {Method::kInstantRadiosity}},
+      {"--gl-device", {Method::kInstantRadiosity, Method::kRadiosityHemicube}},
   };
   return options;
 }

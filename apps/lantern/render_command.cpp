@@ -73,6 +73,8 @@ RenderOptions common_options(const Arguments& arguments) {
   options.passes = arguments.passes;
   options.samples = arguments.samples;
   if (arguments.seconds > 0.0) options.seconds = arguments.seconds;
+  options.backend = arguments.backend == "gl" ? Backend::kGl : Backend::kCpu;
+  if (arguments.gl_device >= 0) options.gl_device = arguments.gl_device;
   return options;
 }
 
@@ -92,7 +94,6 @@ void add_instant_radiosity(const Arguments& arguments, RenderOptions& options) {
       arguments.bound.value_or(arguments.compensate ? kUsualBoundCompensated : kUsualBound);
   options.compensate = arguments.compensate;
   options.shadow_rays = arguments.single_rays ? ShadowRays::kSingle : ShadowRays::kPackets;
-  options.backend = arguments.backend == "gl" ? Backend::kGl : Backend::kCpu;
   if (arguments.shadows == "interleaved") options.tile = arguments.tile;
   if (arguments.shadows == "maps") options.shadows = ShadowMethod::kMaps;
   options.volumes = arguments.volumes == "z-pass"   ? VolumeMethod::kZPass
@@ -100,7 +101,6 @@ void add_instant_radiosity(const Arguments& arguments, RenderOptions& options) {
                                                     : VolumeMethod::kExact;
   options.show_volumes = arguments.show_volumes;
   options.deal_lights = arguments.deal_lights;
-  if (arguments.gl_device >= 0) options.gl_device = arguments.gl_device;
 }
 
 void add_path(const Arguments& arguments, RenderOptions& options) {
@@ -184,6 +184,7 @@ void add_radiosity(const RenderOptions& options, const RenderStatistics& statist
     return;
   }
   metadata["hemicube"] = std::to_string(radiosity.hemicube.resolution);
+  if (options.backend == Backend::kGl) metadata["backend"] = "gl";
   if (shoots(options.method)) {
     metadata.insert({{"cutoff", fmt::format("{}", radiosity.cutoff)},
                      {"shots", std::to_string(statistics.radiosity.shots)},
@@ -293,7 +294,8 @@ void require_variance_format(const Arguments& arguments) {
 /// What means nothing to shadow rays or to GL is wrong usage there.
 void check_backend(const CLI::App& command, const Arguments& arguments) {
   const bool gl = arguments.backend == "gl";
-  if (gl && method_of(arguments.method) != Method::kInstantRadiosity) {
+  const Method method = method_of(arguments.method);
+  if (gl && method != Method::kInstantRadiosity && method != Method::kRadiosityHemicube) {
     throw UsageError(fmt::format("--backend gl means nothing to --method {}", arguments.method));
   }
   const std::vector<const char*> of_other =
@@ -385,7 +387,7 @@ void add_render(CLI::App& app) {
   command->add_option("--method", a.method, "How the picture is made")
       ->check(CLI::IsMember(method_names()))
       ->capture_default_str();
-  command->add_option("--backend", a.backend, "cpu or gl")
+  command->add_option("--backend", a.backend, "cpu or gl (instant-radiosity, radiosity-hemicube)")
       ->check(CLI::IsMember({"cpu", "gl"}))
       ->capture_default_str();
   command

@@ -249,6 +249,15 @@ TEST_F(CommandTest, RadiosityTellsStatisticsAsJson) {
   }
 }
 
+#ifdef LANTERN_WITH_GL
+TEST_F(CommandTest, HemicubesCanBeDrawnByGl) {
+  const Outcome outcome = run(radiosity("hemicube", {"--patches", "100", "--backend", "gl"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const Rgb& pixel : read_image(folder_ / "a.pfm").pixels) EXPECT_NEAR(pixel.g, 2.0f, 0.1f);
+  EXPECT_EQ(run(radiosity("progressive", {"--backend", "gl"})).code, 2);
+}
+#endif
+
 TEST_F(CommandTest, TheMatrixTellsItsMemoryAndTimeBeforehandAndKeepsToTheMemory) {
   for (const std::string solver : {"gauss-seidel", "elimination"}) {
     const Outcome outcome =

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/pipeline/render_radiosity_hemicube.h"
 
+#include "lantern/pipeline/gl_items.h"
 #include "lantern/pipeline/radiosity_rounds.h"
 #include "lantern/radiosity/hemicube_matrix.h"
 #include "lantern/radiosity/solve.h"
 
+#include <memory>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -19,12 +21,15 @@ constexpr int kRefinements = 0;
 
 Rendered render_radiosity_hemicube(const RenderJob& job) {
   require_matrix_memory(least_elements(job));
+  std::unique_ptr<HemicubePainter> painter;
+  if (job.options.backend == Backend::kGl) painter = make_gl_painter(job);
+  HemicubeOptions hemicube = job.options.radiosity.hemicube;
+  hemicube.painter = painter.get();
   const auto solve = [&](const RadiosityStage& stage, RadiosityStatistics& statistics) {
     require_matrix_memory(stage.patches.elements());
     const Stopwatch watch;
     const FormFactors factors = hemicube_form_factors(
-        job.world, job.tracer, stage.patches, job.options.radiosity.hemicube, job.stop,
-        [&](double share) {
+        job.world, job.tracer, stage.patches, hemicube, job.stop, [&](double share) {
           if (!job.report) return;
           job.report({share, watch.seconds() * (1.0 / share - 1.0), statistics.rounds});
         });

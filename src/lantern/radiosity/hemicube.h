@@ -54,4 +54,12 @@ class Hemicube {
   std::vector<double> delta_;
 };
 
+/// Draws item buffers otherwise than with rays.
+class HemicubePainter {
+ public:
+  virtual ~HemicubePainter() = default;
+  /// What each pixel of the hemicube sees, in its order; distances say just whether it is anything.
+  virtual void draw(const Hemicube& cube, const HemicubeView& view, std::span<Hit> hits) = 0;
+};
+
 }  // namespace lantern

@@ -56,6 +56,7 @@ HemicubeRows::HemicubeRows(const World& world, const Tracer& tracer, const Patch
       locator_(patches.mesh, world.size()),
       scale_(world.coordinate_scale()),
       seed_(options.seed),
+      painter_(options.painter),
       cubes_(halved(options.resolution)),
       items_(kBatch * cubes_.front().size()),
       sums_(kBatch) {
@@ -86,22 +87,38 @@ HemicubeView HemicubeRows::view_from_point(std::uint32_t element, std::uint64_t 
   return view(element, a + uv.x * (b - a) + uv.y * (c - a), number);
 }
 
+/// The element that a ray met, or one of the items that are none.
+std::uint32_t HemicubeRows::item(const Hit& hit, const Vec3& direction) const {
+  if (!hit) return kEscaped;
+  const bool front = glm::dot(area_vectors_[hit.triangle], direction) < 0.0f;
+  return patches_.element_at(locator_.at(hit.triangle, hit.uv), front);
+}
+
 void HemicubeRows::draw(const Hemicube& cube, std::span<const HemicubeView> views) {
+  if (painter_ && &cube == &cubes_.front()) {
+    paint(cube, views);
+    return;
+  }
   parallel_for(views.size() * cube.packets(), kGrain, [&](std::size_t i) {
     const HemicubeView& view = views[i / cube.packets()];
     const std::size_t packet = i % cube.packets();
     std::array<Hit, kPacket> hits;
     cube.draw(tracer_, view, packet, hits.data());
     for (std::size_t lane = 0; lane < kPacket; ++lane) {
-      std::uint32_t item = kEscaped;
-      if (const Hit& hit = hits[lane]) {
-        const Vec3 direction = cube.direction(view, packet * kPacket + lane);
-        const bool front = glm::dot(area_vectors_[hit.triangle], direction) < 0.0f;
-        item = patches_.element_at(locator_.at(hit.triangle, hit.uv), front);
-      }
-      items_[i * kPacket + lane] = item;
+      const Vec3 direction = cube.direction(view, packet * kPacket + lane);
+      items_[i * kPacket + lane] = item(hits[lane], direction);
     }
   });
+}
+
+void HemicubeRows::paint(const Hemicube& cube, std::span<const HemicubeView> views) {
+  painted_.resize(cube.size());
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    painter_->draw(cube, views[v], painted_);
+    parallel_for(cube.size(), kGrain * kPacket, [&](std::size_t i) {
+      items_[v * cube.size() + i] = item(painted_[i], cube.direction(views[v], i));
+    });
+  }
 }
 
 /// A hemicube that sees nothing but the inside of a solid stands on a part of the element that the

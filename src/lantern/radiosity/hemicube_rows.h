@@ -23,8 +23,9 @@ struct FormFactorRow {
 };
 
 struct HemicubeOptions {
-  int resolution = 64;     // pixels along the top's edge of the finest, see hemicube.h
-  std::uint64_t seed = 0;  // other turns, other points
+  int resolution = 64;                 // pixels along the top's edge of the finest, see hemicube.h
+  std::uint64_t seed = 0;              // other turns, other points
+  HemicubePainter* painter = nullptr;  // for the finest; none: rays
 };
 
 /// Its buffers serve all of its calls: one call at a time.
@@ -61,7 +62,9 @@ class HemicubeRows {
   HemicubeView view(std::uint32_t element, const glm::dvec3& position, std::uint64_t turn) const;
   HemicubeView view_from_centre(std::uint32_t element) const;
   HemicubeView view_from_point(std::uint32_t element, std::uint64_t number) const;
+  std::uint32_t item(const Hit& hit, const Vec3& direction) const;
   void draw(const Hemicube& cube, std::span<const HemicubeView> views);
+  void paint(const Hemicube& cube, std::span<const HemicubeView> views);
   void add(const Hemicube& cube, std::size_t number, Sum& sum) const;
   void add_uncovered_point(const Hemicube& cube, std::uint32_t element, std::uint64_t first,
                            Sum& sum);
@@ -73,7 +76,9 @@ class HemicubeRows {
   std::vector<Vec3> area_vectors_;  // of the world's triangles
   float scale_;
   std::uint64_t seed_;
+  HemicubePainter* painter_;
   std::vector<Hemicube> cubes_;
+  std::vector<Hit> painted_;          // of one hemicube
   std::vector<std::uint32_t> items_;  // of the hemicubes drawn last, one after the other
   std::vector<Sum> sums_;
 };

@@ -90,6 +90,7 @@ void ItemBuffer::draw(const HemicubePose& pose) {
   draw_items_.set("origin", pose.origin);
   draw_items_.set("to_local", pose.to_local);
   draw_items_.set("near", near_);
+  draw_items_.set("shift", pose.shift * (2.0f / static_cast<float>(resolution_)));
   draw_items_.set("planes", 0, planes_);
   vertices_.bind();
   const int n = resolution_;

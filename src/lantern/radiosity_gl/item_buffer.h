@@ -16,6 +16,7 @@ namespace lantern {
 struct HemicubePose {
   Vec3 origin;
   Mat3 to_local;
+  Vec2 shift{0.0f};  // of what a pixel looks at from its centre, in pixels
 };
 
 class ItemBuffer {
