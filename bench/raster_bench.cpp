@@ -8,6 +8,7 @@
 #include "lantern/lights/walk.h"
 #include "lantern/load/load.h"
 #include "lantern/pipeline/camera.h"
+#include "lantern/raster/masked_shading.h"
 #include "lantern/raster/raster_lights.h"
 #include "lantern/raster/shadow_maps.h"
 #include "lantern/raster/stencil_shadows.h"
@@ -93,17 +94,15 @@ int main(int argc, char** argv) {
   const gl::ShaderFiles files(texts);
   const gl::Program unshadowed(files, "shaders/full_screen.vert.glsl", "unshadowed",
                                {{"KIND", "0"}});
-  const gl::Program shade(files, "shaders/full_screen.vert.glsl", "shaders/shade.frag.glsl",
-                          {{"KIND", "0"}, {"MAPS", "0"}});
   const Surfaces surfaces(scene, world, files);
   ShadowMaps maps(scene, world, surfaces, files, {});
-  const gl::Program shade_by_maps(files, "shaders/full_screen.vert.glsl", "shaders/shade.frag.glsl",
-                                  {{"KIND", "0"}, {"MAPS", "1"}});
+  const gl::Program shade_by_maps(files, "shaders/full_screen.vert.glsl",
+                                  "shaders/shade_by_maps.frag.glsl", {{"KIND", "0"}});
   unshadowed.set_block("Lights", 0);
-  shade.set_block("Lights", 0);
   shade_by_maps.set_block("Lights", 0);
   ShadowMaps::prepare(shade_by_maps);
   StencilShadows shadows(world, files, VolumeMethod::kExact);
+  MaskedShading shading(files, kWidth, kHeight, 0);
   StageTimes times;
   GBuffer g_buffer(kWidth, kHeight);
   gl::Texture mask(gl::Format::kRgba8, kWidth, kHeight);
@@ -148,14 +147,9 @@ int main(int argc, char** argv) {
     for (const LightGroup& group : groups) {
       shadows.draw(group.points, view, mask_framebuffer, times);
       with_block(group);
-      shade.set("u_points", 0, g_buffer.points);
-      shade.set("u_reflectances", 1, g_buffer.reflectances);
-      shade.set("u_mask", 2, mask);
-      shade.set("u_sum", 3, sum);
-      shade.set("u_count", static_cast<int>(group.records.size()));
-      next_framebuffer.bind();
-      gl::draw_full_screen(none);
+      shading.add(group, g_buffer, mask);
     }
+    shading.copy_to(sum);
   });
   const double map_drawing = cost([&] {
     maps.keep({});

@@ -23,20 +23,24 @@ uniform vec3 u_reflectance;
 uniform vec3 u_emission;
 uniform bool u_double_sided;
 uniform bool u_vertex_colours;
+#if TEXTURED
 uniform sampler2D u_reflectance_texture;
 uniform sampler2D u_emission_texture;
 // (how it wraps in u and in v, 1: sRGB bytes, 1: there is one)
 uniform vec4 u_reflectance_look_up;
 uniform vec4 u_emission_look_up;
+#endif
 
 layout(location = 0) out uvec4 o_point;       // position's bits, shading normal
 layout(location = 1) out uvec4 o_reflectance; // its bits, geometric normal
 layout(location = 2) out vec4 o_emission;     // radiance, number of the triangle and 1
 
+#if TEXTURED
 vec3 looked_up(sampler2D image, vec4 how) {
   if (how.w == 0.0) return vec3(1.0);
   return sample_texture(image, v_texcoord, ivec2(how.xy), how.z != 0.0).rgb;
 }
+#endif
 
 void main() {
 #if HOLES
@@ -54,12 +58,14 @@ void main() {
     if (dot(shading, geometric) < 0.0) shading = -shading;
   }
   float side = front ? 1.0 : -1.0;
-  vec3 reflectance = u_reflectance * looked_up(u_reflectance_texture, u_reflectance_look_up);
+  vec3 reflectance = u_reflectance, emission = u_emission;
   if (u_vertex_colours) reflectance *= v_colour.rgb;
-  reflectance = clamp(reflectance, 0.0, 1.0);
-  vec3 emission = u_emission;
   if (!front && !u_double_sided) emission = vec3(0.0);
+#if TEXTURED
+  reflectance *= looked_up(u_reflectance_texture, u_reflectance_look_up);
   emission *= looked_up(u_emission_texture, u_emission_look_up);
+#endif
+  reflectance = clamp(reflectance, 0.0, 1.0);
 
   vec3 lifted = v_position + geometric * (side * u_lift);
   o_point = uvec4(floatBitsToUint(lifted), pack_unit(shading * side));

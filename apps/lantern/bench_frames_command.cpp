@@ -22,7 +22,7 @@ struct Arguments {
   SceneArguments scene;
   CameraArguments camera;
   std::string size = "640x480";
-  std::vector<std::string> shadows = {"stencil", "interleaved"};
+  std::vector<std::string> shadows = {"stencil", "interleaved", "maps"};
   int tile = 4;
   int gl_device = -1;
   std::vector<std::size_t> lights = {8, 16, 32, 64, 128, 256};

@@ -24,7 +24,11 @@ void clip_control(bool near_is_1) {
 void apply(const DrawState& state, const View& view) {
   clip_control(view.near_is_1);
   enable(GL_DEPTH_TEST, state.depth != DepthUse::kNone);
-  glDepthFunc(view.near_is_1 ? GL_GREATER : GL_LESS);
+  if (state.depth == DepthUse::kFillGaps) {
+    glDepthFunc(view.near_is_1 ? GL_GEQUAL : GL_LEQUAL);
+  } else {
+    glDepthFunc(view.near_is_1 ? GL_GREATER : GL_LESS);
+  }
   glDepthMask(state.depth == DepthUse::kDraw ? GL_TRUE : GL_FALSE);
   const GLboolean colour = state.colour ? GL_TRUE : GL_FALSE;
   glColorMask(colour, colour, colour, colour);

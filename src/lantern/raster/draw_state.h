@@ -6,7 +6,12 @@
 
 namespace lantern {
 
-enum class DepthUse { kNone, kDraw, kTest };  // kTest: pass what is nearer, write nothing
+enum class DepthUse {
+  kNone,
+  kDraw,
+  kTest,     // pass what is nearer, write nothing
+  kFillGaps  // pass what is not further, write nothing
+};
 enum class StencilUse {
   kNone,
   kCountPassing,  // +1 for fronts that are nearer, -1 for backs

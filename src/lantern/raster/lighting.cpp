@@ -12,12 +12,11 @@ namespace {
 
 constexpr GLuint kLightsBinding = 0;
 
-gl::Program shade_program(const gl::ShaderFiles& files, LightFormula formula, bool maps) {
-  gl::Program program(
-      files, "shaders/full_screen.vert.glsl", "shaders/shade.frag.glsl",
-      {{"KIND", std::to_string(static_cast<int>(formula))}, {"MAPS", maps ? "1" : "0"}});
+gl::Program shade_program(const gl::ShaderFiles& files, LightFormula formula) {
+  gl::Program program(files, "shaders/full_screen.vert.glsl", "shaders/shade_by_maps.frag.glsl",
+                      {{"KIND", std::to_string(static_cast<int>(formula))}});
   program.set_block("Lights", kLightsBinding);
-  if (maps) ShadowMaps::prepare(program);
+  ShadowMaps::prepare(program);
   return program;
 }
 
@@ -31,21 +30,31 @@ Lighting::Lighting(const Surfaces& surfaces, const Shadows& shadows, StageTimes&
       g_buffer_(width, height),
       mask_(gl::Format::kRgba8, width, height),
       mask_framebuffer_({&mask_}, &g_buffer_.depth),
-      shade_{shade_program(files, LightFormula::kSurface, shadows.maps != nullptr),
-             shade_program(files, LightFormula::kPunctual, shadows.maps != nullptr),
-             shade_program(files, LightFormula::kDirectional, shadows.maps != nullptr)},
       light_block_(std::span<const LightRecord>()),
       irradiance_{Target(gl::Format::kRgba32f, width, height),
-                  Target(gl::Format::kRgba32f, width, height)} {}
+                  Target(gl::Format::kRgba32f, width, height)} {
+  if (!shadows.maps) {
+    masked_.emplace(files, width, height, kLightsBinding);
+    return;
+  }
+  for (const LightFormula formula :
+       {LightFormula::kSurface, LightFormula::kPunctual, LightFormula::kDirectional}) {
+    by_maps_.push_back(shade_program(files, formula));
+  }
+}
 
 void Lighting::draw(const View& view, std::span<const LightGroup> groups,
                     const std::function<bool()>& group_done) {
   times_.begin(Stage::kSurfaces);
   surfaces_.draw(view, g_buffer_);
   times_.end();
-  irradiance_[0].framebuffer.bind();
-  const float none[4] = {};
-  glClearBufferfv(GL_COLOR, 0, none);
+  if (masked_) {
+    masked_->clear();
+  } else {
+    irradiance_[0].framebuffer.bind();
+    const float none[4] = {};
+    glClearBufferfv(GL_COLOR, 0, none);
+  }
   if (!shadows_.volumes) {
     const float all_seen[4] = {1.0f, 1.0f, 1.0f, 1.0f};
     mask_framebuffer_.bind();
@@ -57,6 +66,7 @@ void Lighting::draw(const View& view, std::span<const LightGroup> groups,
     add(group);
     if (!group_done()) break;
   }
+  if (masked_) masked_->copy_to(irradiance_[0].texture);
 }
 
 /// What the lights of the mask's bits give.
@@ -66,16 +76,19 @@ void Lighting::add(const LightGroup& group) {
   light_block_.write(std::span<const LightRecord>(records));
   light_block_.bind_as_uniforms(kLightsBinding);
   times_.begin(Stage::kShading);
-  const gl::Program& program = shade_[static_cast<std::size_t>(group.formula)];
+  if (masked_) {
+    masked_->add(group, g_buffer_, mask_);
+    times_.end();
+    return;
+  }
+  const gl::Program& program = by_maps_[static_cast<std::size_t>(group.formula)];
   program.set("u_points", 0, g_buffer_.points);
   program.set("u_reflectances", 1, g_buffer_.reflectances);
   program.set("u_mask", 2, mask_);
   program.set("u_sum", 3, irradiance_[0].texture);
   program.set("u_count", static_cast<int>(group.records.size()));
-  if (shadows_.maps) {
-    shadows_.maps->set_in(program, 4);
-    program.set("u_emissions", 6, g_buffer_.emissions);
-  }
+  shadows_.maps->set_in(program, 4);
+  program.set("u_emissions", 6, g_buffer_.emissions);
   irradiance_[1].framebuffer.bind();
   gl::draw_full_screen(no_vertices_);
   times_.end();

@@ -5,6 +5,7 @@
 
 #include "lantern/gl/objects.h"
 #include "lantern/gl/program.h"
+#include "lantern/raster/masked_shading.h"
 #include "lantern/raster/raster_lights.h"
 #include "lantern/raster/shadow_maps.h"
 #include "lantern/raster/stage_times.h"
@@ -14,7 +15,9 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
+#include <vector>
 
 namespace lantern {
 
@@ -57,9 +60,10 @@ class Lighting {
   GBuffer g_buffer_;
   gl::Texture mask_;
   gl::Framebuffer mask_framebuffer_;
-  std::array<gl::Program, kLightFormulas> shade_;
   gl::Buffer light_block_;
-  std::array<Target, 2> irradiance_;  // what there is, and that with a group of lights more
+  std::optional<MaskedShading> masked_;  // where masks alone say what is seen
+  std::vector<gl::Program> by_maps_;     // else: a program for each formula
+  std::array<Target, 2> irradiance_;     // what there is, and that with a group of lights more
   gl::VertexArray no_vertices_;
 };
 

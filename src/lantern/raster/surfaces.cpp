@@ -59,6 +59,11 @@ gl::Buffer geometric_normals(const World& world, std::span<const std::uint32_t> 
   return gl::Buffer(std::span<const Vec3>(normals));
 }
 
+bool is_textured(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& m) { return m.reflectance_texture || m.emission_texture; });
+}
+
 }  // namespace
 
 GBuffer::GBuffer(int width, int height)
@@ -71,10 +76,12 @@ GBuffer::GBuffer(int width, int height)
 Surfaces::Surfaces(const Scene& scene, const World& world, const gl::ShaderFiles& files)
     : scene_(scene),
       lift_(glm::length(off_surface(Vec3(0.0f), Vec3(1.0f, 0.0f, 0.0f), world.coordinate_scale()))),
-      surface_(files, "shaders/surface.vert.glsl", "shaders/surface.frag.glsl", {{"HOLES", "0"}}),
+      textured_(is_textured(scene)),
+      surface_(files, "shaders/surface.vert.glsl", "shaders/surface.frag.glsl",
+               {{"TEXTURED", textured_ ? "1" : "0"}, {"HOLES", "0"}}),
       surface_with_holes_(files, "shaders/surface.vert.glsl", "shaders/surface.frag.glsl",
-                          {{"HOLES", "1"}}),
-      sky_(files, "shaders/full_screen.vert.glsl", "shaders/sky.frag.glsl"),
+                          {{"TEXTURED", textured_ ? "1" : "0"}, {"HOLES", "1"}}),
+      sky_(files, "shaders/sky.vert.glsl", "shaders/sky.frag.glsl"),
       no_texture_(gl::Format::kRgba8, 1, 1) {
   const auto use = [&](const std::optional<TextureId>& id) {
     if (id && !textures_.contains(*id)) textures_.emplace(*id, upload(scene.textures[index(*id)]));
@@ -158,15 +165,6 @@ void Surfaces::draw(const View& view, const GBuffer& target) const {
   apply({.depth = DepthUse::kDraw}, view);
   glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(view), 0);
 
-  apply({}, view);
-  sky_.set("u_corner", view.corner);
-  sky_.set("u_step_x", view.step_x);
-  sky_.set("u_step_y", view.step_y);
-  sky_.set("u_radiance", scene_.sky ? scene_.sky->radiance : Rgb(0.0f));
-  set_look_up(sky_, "u_sky", "u_look_up", 0,
-              scene_.sky ? scene_.sky->texture : std::optional<TextureId>());
-  gl::draw_full_screen(no_vertices_);
-
   apply({.depth = DepthUse::kDraw}, view);
   set_view(surface_, view);
   vertices_->bind();
@@ -187,11 +185,24 @@ void Surfaces::draw(const View& view, const GBuffer& target) const {
     program.set("u_emission", material.emission);
     program.set("u_double_sided", material.double_sided ? 1 : 0);
     program.set("u_vertex_colours", material.vertex_colours ? 1 : 0);
-    set_look_up(program, "u_reflectance_texture", "u_reflectance_look_up", 0,
-                material.reflectance_texture);
-    set_look_up(program, "u_emission_texture", "u_emission_look_up", 1, material.emission_texture);
+    if (textured_) {
+      set_look_up(program, "u_reflectance_texture", "u_reflectance_look_up", 0,
+                  material.reflectance_texture);
+      set_look_up(program, "u_emission_texture", "u_emission_look_up", 1,
+                  material.emission_texture);
+    }
     glDrawArrays(GL_TRIANGLES, batch.first, batch.count);
   }
+  // Last, so that only what is seen of it is looked up.
+  apply({.depth = DepthUse::kFillGaps}, view);
+  sky_.set("u_far", far_depth(view));
+  sky_.set("u_corner", view.corner);
+  sky_.set("u_step_x", view.step_x);
+  sky_.set("u_step_y", view.step_y);
+  sky_.set("u_radiance", scene_.sky ? scene_.sky->radiance : Rgb(0.0f));
+  set_look_up(sky_, "u_sky", "u_look_up", 0,
+              scene_.sky ? scene_.sky->texture : std::optional<TextureId>());
+  gl::draw_full_screen(no_vertices_);
   reset_draw_state();
   gl::check("drawing the surfaces");
 }

@@ -49,6 +49,7 @@ class Surfaces {
 
   const Scene& scene_;
   float lift_;
+  bool textured_;  // any of the materials
   gl::Program surface_, surface_with_holes_, sky_;
   std::map<TextureId, gl::Texture> textures_;
   gl::Texture no_texture_;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Adds the irradiance of up to 32 lights to what there is: bit i of the mask says whether light i
-// is seen, and with MAPS its shadow map must say so too.
+// is seen, and its shadow map must say so too.
 #include "shaders/lights.glsl"
 #include "shaders/octahedral.glsl"
-#if MAPS
 #include "shaders/shadow_maps.glsl"
 uniform sampler2D u_emissions;
-#endif
 
 uniform highp usampler2D u_points;
 uniform highp usampler2D u_reflectances;
@@ -26,23 +24,18 @@ void main() {
   p.position = uintBitsToFloat(bits.xyz);
   p.shading = unpack_unit(bits.w);
   p.geometric = unpack_unit(texelFetch(u_reflectances, at, 0).w);
-#if MAPS
   uint own = uint(texelFetch(u_emissions, at, 0).a);
   uint open_ones = 0u;
-#endif
   for (int i = 0; i < u_count; ++i) {
     uint bit = 1u << uint(i);
     if ((mask & bit) == 0u) continue;
     vec3 irradiance = irradiance_from(u_lights[i], p);
-#if MAPS
     if (irradiance == vec3(0.0)) continue;
     int told = look_up(i, p, way_to(u_lights[i], p), own);
     if (told == kOpen) open_ones |= bit;
     if (told != kSeen) continue;
-#endif
     sum += irradiance;
   }
-#if MAPS
   // One ray against one triangle a turn, so that pixels that have more to do do not hold up others
   // at every light.
   Question open = new_question();
@@ -55,6 +48,5 @@ void main() {
     open_ones &= ~bit;
     open = new_question();
   }
-#endif
   o_irradiance = vec4(sum, 1.0);
 }

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Adds up what lights give to the pixels that see them, 32 lights at a time, in 32-bit floats. The
+// picture is cut into four strips of rows and a fragment shades a pixel of each; see
+// shaders/shade_masked.frag.glsl.
+#pragma once
+
+#include "lantern/gl/objects.h"
+#include "lantern/gl/program.h"
+#include "lantern/raster/raster_lights.h"
+#include "lantern/raster/surfaces.h"
+
+#include <array>
+
+namespace lantern {
+
+class MaskedShading {
+ public:
+  /// Of a picture of this size. The lights are in the uniform block with this binding.
+  MaskedShading(const gl::ShaderFiles& files, int width, int height, GLuint lights_binding);
+
+  /// No light.
+  void clear();
+  /// And what the lights of the mask's bits give.
+  void add(const LightGroup& group, const GBuffer& g_buffer, const gl::Texture& mask);
+  /// All strips into one picture.
+  void copy_to(const gl::Texture& irradiance) const;
+
+ private:
+  static constexpr int kStrips = 4;
+  struct Strips {
+    std::array<gl::Texture, kStrips> textures;
+    gl::Framebuffer framebuffer;
+    Strips(int width, int rows);
+  };
+
+  int height_, rows_;
+  std::array<gl::Program, kLightFormulas> shade_;
+  std::array<Strips, 2> sums_;  // what there is, and that with a group of lights more
+  gl::VertexArray no_vertices_;
+};
+
+}  // namespace lantern
