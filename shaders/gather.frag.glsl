@@ -48,32 +48,46 @@ int seen(vec3 local) {
   return int(texelFetch(items, pixel, 0).x & 0x7fffffffu) - 1;
 }
 
-/// Whether the plane of the triangle stands between the origin and the point: by how much it does is
-/// exact for each element, so that nothing shadows itself, however flat the angle.
-bool is_between(int triangle, vec3 point, vec3 way, bool settled_by_plane) {
+/// How far the point lies beyond the plane of the triangle, in metres, and how far the origin lies on
+/// this side of it. Exact for each element, so that nothing shadows itself, however flat the angle.
+vec2 beyond(int triangle, vec3 point) {
   vec4 plane = texelFetch(planes, texel_of(triangle, textureSize(planes, 0)), 0);
   float height = dot(plane.xyz, origin) + plane.w;
-  float beyond = -sign(height) * (dot(plane.xyz, point) + plane.w);
-  if (beyond <= hair) return false;
-  // At an edge the pixel may see the next surface, whose plane cuts off a little of this one.
-  if (settled_by_plane && beyond > tolerance * (beyond + abs(height))) return true;
-  return is_met(triangle, way);
+  return vec2(-sign(height) * (dot(plane.xyz, point) + plane.w), abs(height));
 }
 
+/// Whether what a pixel sees stands before the point by more than the pixel's size.
+bool hides(int triangle, vec3 point) {
+  if (triangle < 0) return false;
+  vec2 depth = beyond(triangle, point);
+  return depth.x > hair && depth.x > tolerance * (depth.x + depth.y);
+}
+
+bool is_between(int triangle, vec3 point, vec3 way) {
+  return triangle >= 0 && beyond(triangle, point).x > hair && is_met(triangle, way);
+}
+
+/// The pixel on the way and those half a pixel beside it tell which triangles to ask. Where all see
+/// something before the point it is in shadow; where an edge passes through the triangles
+/// themselves decide, or shadows would grow by half a pixel.
 bool is_lit(vec3 point, vec3 way, vec3 local) {
-  int here = seen(local);
-  if (here >= 0 && is_between(here, point, way, true)) return false;
-  // Where an edge passes through the pixel what stands between may fill only a part of it.
   vec3 a = abs(local);
   float most = max(a.x, max(a.y, a.z));
   vec3 d = local / most;
   float half_pixel = 1.0 / float(textureSize(items, 0).x);
+  int around[5];
+  around[4] = seen(local);
+  bool hidden = hides(around[4], point);
   for (int k = 0; k < 4; ++k) {
     float u = (k & 1) == 0 ? -half_pixel : half_pixel;
     float v = (k & 2) == 0 ? -half_pixel : half_pixel;
     vec3 tap = d + (a.z == most ? vec3(u, v, 0.0) : a.x == most ? vec3(0.0, u, v) : vec3(u, 0.0, v));
-    int there = seen(vec3(tap.xy, max(tap.z, 0.0)));
-    if (there >= 0 && there != here && is_between(there, point, way, false)) return false;
+    around[k] = seen(vec3(tap.xy, max(tap.z, 0.0)));
+    hidden = hidden && hides(around[k], point);
+  }
+  if (hidden) return false;
+  for (int k = 0; k < 5; ++k) {
+    if (is_between(around[k], point, way)) return false;
   }
   return true;
 }
