@@ -30,10 +30,13 @@ Interleaving::Interleaving(const gl::ShaderFiles& files, int width, int height, 
                            float radius)
     : tile_(tile),
       radius_(radius),
+      add_rows_(files, "shaders/full_screen.vert.glsl", "shaders/interleaved_rows.frag.glsl",
+                {{"TILE", std::to_string(tile)}}),
       filter_(files, "shaders/full_screen.vert.glsl", "shaders/interleaved.frag.glsl",
               {{"TILE", std::to_string(tile)}}),
       shares_(gl::Format::kRgba32f, (width + tile - 1) / tile * tile,
               (height + tile - 1) / tile * tile),
+      rows_(gl::Format::kRgba32f, width, height),
       irradiance_(gl::Format::kRgba32f, width, height) {}
 
 void Interleaving::take(const Target& irradiance, int x, int y) {
@@ -47,12 +50,17 @@ void Interleaving::take(const Target& irradiance, int x, int y) {
 const Target& Interleaving::filter(const GBuffer& g_buffer) {
   // A tile sees about this much of a surface; further off its plane is another one.
   constexpr float kSamePlane = 1e-2f;
-  filter_.set("u_points", 0, g_buffer.points);
-  filter_.set("u_reflectances", 1, g_buffer.reflectances);
-  filter_.set("u_shares", 2, shares_);
-  filter_.set("u_plane_distance", kSamePlane * radius_);
-  irradiance_.framebuffer.bind();
-  gl::draw_full_screen(no_vertices_);
+  const auto run = [&](const gl::Program& program, const Target& target) {
+    program.set("u_points", 0, g_buffer.points);
+    program.set("u_reflectances", 1, g_buffer.reflectances);
+    program.set("u_shares", 2, shares_);
+    program.set("u_plane_distance", kSamePlane * radius_);
+    target.framebuffer.bind();
+    gl::draw_full_screen(no_vertices_);
+  };
+  run(add_rows_, rows_);
+  filter_.set("u_rows", 3, rows_.texture);
+  run(filter_, irradiance_);
   gl::check("filtering");
   return irradiance_;
 }

@@ -34,9 +34,9 @@ class Interleaving {
  private:
   int tile_;
   float radius_;
-  gl::Program filter_;
+  gl::Program add_rows_, filter_;
   gl::Texture shares_;
-  Target irradiance_;
+  Target rows_, irradiance_;
   gl::VertexArray no_vertices_;
 };
 
