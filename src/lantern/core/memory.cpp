@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <sys/resource.h>
+#include <unistd.h>
 
 namespace lantern {
 namespace {
@@ -33,6 +35,15 @@ std::uint64_t available_bytes() {
   const std::uint64_t used = number_in("/sys/fs/cgroup/memory.current");
   if (limit != kUnknown && used != kUnknown) {
     available = std::min(available, limit - std::min(limit, used));
+  }
+  // So may whoever started the process.
+  rlimit space{};
+  if (::getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY) {
+    const std::uint64_t pages = number_in("/proc/self/statm");
+    const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+    const std::uint64_t taken = pages == kUnknown ? 0 : pages * page;
+    available =
+        std::min<std::uint64_t>(available, space.rlim_cur - std::min(space.rlim_cur, taken));
   }
   return available;
 }

@@ -7,8 +7,8 @@
 
 namespace lantern {
 
-/// Bytes that the process could still take without pushing anything out of memory; the largest
-/// number where the system does not say.
+/// Bytes that the process could still take without pushing anything out of memory or passing its
+/// own limit of address space; the largest number where the system does not say.
 std::uint64_t available_bytes();
 
 /// Throws Error with both numbers if `what` of so many bytes is more than is available; `remedy` is
