@@ -129,9 +129,8 @@ bool is_in_way(inout Question open, int light, Point p, vec3 way, uint own) {
     is_nearest = texel == ivec2(floor(at.texel));
     has_holes = (seen & kHoles) != 0u;
     is_other_texel = has_holes && !is_nearest;
-    if (has_holes) open.steps = kNoSteps;
     open.texels ^= bit;
-    open.steps = 0;
+    open.steps = has_holes ? kNoSteps : 0;
   }
   open.triangle = 0u;
   if (number == own || number == 0u || is_other_texel) return false;

@@ -277,7 +277,9 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
 void Rasteriser::draw_frame(const Camera& camera, const VirtualLights& lights,
                             std::span<const float> bounds, std::size_t sample) {
   state_->times.collect();
-  state_->draw(camera, state_->groups(lights, bounds, sample), sample, [] { return true; });
+  const auto groups = state_->groups(lights, bounds, sample);
+  if (state_->maps) state_->maps->keep(groups);
+  state_->draw(camera, groups, sample, [] { return true; });
 }
 
 std::map<std::string, double> Rasteriser::seconds_of_stages() {
