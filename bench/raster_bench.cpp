@@ -8,6 +8,7 @@
 #include "lantern/lights/walk.h"
 #include "lantern/load/load.h"
 #include "lantern/pipeline/camera.h"
+#include "lantern/raster/lighting.h"
 #include "lantern/raster/masked_shading.h"
 #include "lantern/raster/raster_lights.h"
 #include "lantern/raster/shadow_maps.h"
@@ -96,11 +97,7 @@ int main(int argc, char** argv) {
                                {{"KIND", "0"}});
   const Surfaces surfaces(scene, world, files);
   ShadowMaps maps(scene, world, surfaces, files, {});
-  const gl::Program shade_by_maps(files, "shaders/full_screen.vert.glsl",
-                                  "shaders/shade_by_maps.frag.glsl", {{"KIND", "0"}});
   unshadowed.set_block("Lights", 0);
-  shade_by_maps.set_block("Lights", 0);
-  ShadowMaps::prepare(shade_by_maps);
   StencilShadows shadows(world, files, VolumeMethod::kExact);
   MaskedShading shading(files, kWidth, kHeight, 0);
   StageTimes times;
@@ -155,24 +152,9 @@ int main(int argc, char** argv) {
     maps.keep({});
     for (const LightGroup& group : groups) maps.draw(group, times);
   });
-  mask_framebuffer.bind();
-  const float all_seen[4] = {1.0f, 1.0f, 1.0f, 1.0f};
-  glClearBufferfv(GL_COLOR, 0, all_seen);
-  const double map_shading = cost([&] {
-    for (const LightGroup& group : groups) {
-      with_block(group);
-      maps.draw(group, times);
-      maps.set_in(shade_by_maps, 4);
-      shade_by_maps.set("u_points", 0, g_buffer.points);
-      shade_by_maps.set("u_reflectances", 1, g_buffer.reflectances);
-      shade_by_maps.set("u_mask", 2, mask);
-      shade_by_maps.set("u_sum", 3, sum);
-      shade_by_maps.set("u_emissions", 6, g_buffer.emissions);
-      shade_by_maps.set("u_count", static_cast<int>(group.records.size()));
-      next_framebuffer.bind();
-      gl::draw_full_screen(none);
-    }
-  });
+  // Whole frames but for the resolve: surfaces are drawn in a hundredth of the time.
+  Lighting lighting(surfaces, {.volumes = nullptr, .maps = &maps}, times, files, kWidth, kHeight);
+  const double map_shading = cost([&] { lighting.draw(view, groups, [] { return true; }); });
   const EdgeList list(world, find_walls(world));
   double edges = 0;
   const double preparing = cost([&] {
