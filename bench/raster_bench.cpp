@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // What a light costs by OpenGL at 640x480, in CPU time of the whole process (Mesa draws on the CPU)
 // and over that of one unshadowed, blended full-screen pass: the best of five runs, each of which
-// shades by the masks that it drew.
+// shades by the masks that it drew. Maps are shaded in frames as they are.
 //   raster_bench SCENE|balls [--lights PATHS]      balls: the tests' room of 64, 480 triangles each
 #include "lantern/gl/context.h"
 #include "lantern/lights/emitters.h"
 #include "lantern/lights/walk.h"
 #include "lantern/load/load.h"
 #include "lantern/pipeline/camera.h"
+#include "lantern/pipeline/stopwatch.h"
 #include "lantern/raster/lighting.h"
 #include "lantern/raster/masked_shading.h"
 #include "lantern/raster/raster_lights.h"
@@ -22,7 +23,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
-#include <ctime>
 #include <functional>
 
 namespace {
@@ -31,20 +31,14 @@ using namespace lantern;
 
 constexpr int kWidth = 640, kHeight = 480;
 
-double cpu_seconds() {
-  timespec now{};
-  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// Milliseconds of the best of a few runs.
 double cost(const std::function<void()>& work) {
   double best = 1e30;
   for (int run = 0; run < 5; ++run) {
-    const double start = cpu_seconds();
+    const double start = processor_seconds();
     work();
     glFinish();
-    best = std::min(best, cpu_seconds() - start);
+    best = std::min(best, processor_seconds() - start);
   }
   return 1e3 * best;
 }

@@ -101,27 +101,10 @@ class MapsTest : public ::testing::TestWithParam<gl::Api> {
 };
 INSTANTIATE_TEST_SUITE_P(Apis, MapsTest, ::testing::Values(gl::Api::kDesktop, gl::Api::kEs));
 
-/// Eyes anywhere in the scene's box.
-std::vector<Camera> random_cameras(const Bounds& box, int count) {
-  std::vector<Camera> cameras;
-  for (int i = 0; i < count; ++i) {
-    const auto number = [&](std::uint64_t n) {
-      return to_unit_float(hash(static_cast<std::uint64_t>(i), n));
-    };
-    Camera camera;
-    camera.eye = glm::mix(box.low, box.high, Vec3(number(0), number(1), number(2)));
-    const Vec3 target = glm::mix(box.low, box.high, Vec3(number(3), number(4), number(5)));
-    camera.forward = glm::normalize(target - camera.eye);
-    camera.vertical_fov = 1.2f;
-    cameras.push_back(camera);
-  }
-  return cameras;
-}
-
 Difference compare(const test::RasterStage& stage, std::size_t paths, int cameras) {
   Maps maps(stage);
   Difference all;
-  for (const Camera& camera : random_cameras(stage.world.bounds, cameras)) {
+  for (const Camera& camera : test::random_cameras(stage.world.bounds, cameras)) {
     const Difference d = maps.compare(camera, stage.lights(paths));
     all.compared += d.compared;
     all.lit += d.lit;
@@ -212,7 +195,7 @@ TEST_P(MapsTest, KeptMapsAreAsGoodAsNewOnes) {
   std::size_t lights = 0;
   for (const LightGroup& group : groups) lights += group.records.size();
   for (std::size_t view = 1; view <= 3; ++view) {
-    const Camera camera = random_cameras(stage.world.bounds, 3)[view - 1];
+    const Camera camera = test::random_cameras(stage.world.bounds, 3)[view - 1];
     kept.maps.keep(std::span(&groups, 1));
     EXPECT_EQ(kept.irradiance(kept.by_maps, camera, groups),
               fresh.irradiance(fresh.by_maps, camera, groups));

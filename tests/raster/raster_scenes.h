@@ -2,39 +2,27 @@
 // Scenes with their lights, ready for both ways of gathering.
 #pragma once
 
-#include "lantern/lights/emitters.h"
+#include "lantern/core/hash.h"
 #include "lantern/lights/virtual_lights.h"
 #include "lantern/lights/walk.h"
 #include "lantern/load/load.h"
 #include "lantern/scene/scene.h"
 #include "lantern/scene/surface.h"
-#include "lantern/scene/world.h"
-#include "lantern/trace/embree.h"
-#include "lantern/trace/tracer.h"
+
+#include "tests/analytic/rooms.h"
 
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace lantern::test {
 
-/// The parts refer to each other, so it stays where it is.
-struct RasterStage {
-  Scene scene;
-  World world;
-  std::unique_ptr<Tracer> tracer;
-  Emitters emitters;
-
-  explicit RasterStage(Scene given)
-      : scene(std::move(given)),
-        world(make_world(scene)),
-        tracer(make_embree_tracer(scene, world)),
-        emitters(scene, world) {}
-  RasterStage(const RasterStage&) = delete;
-  RasterStage& operator=(const RasterStage&) = delete;
+/// A scene made ready and its lights.
+struct RasterStage : Stage {
+  using Stage::Stage;
 
   VirtualLights lights(std::size_t paths) const {
     WalkOptions options;
@@ -43,6 +31,23 @@ struct RasterStage {
     return walk(scene, world, *tracer, emitters, options);
   }
 };
+
+/// Eyes anywhere in the scene's box.
+inline std::vector<Camera> random_cameras(const Bounds& box, int count) {
+  std::vector<Camera> cameras;
+  for (int i = 0; i < count; ++i) {
+    const auto number = [&](std::uint64_t n) {
+      return to_unit_float(hash(static_cast<std::uint64_t>(i), n));
+    };
+    Camera camera;
+    camera.eye = glm::mix(box.low, box.high, Vec3(number(0), number(1), number(2)));
+    const Vec3 target = glm::mix(box.low, box.high, Vec3(number(3), number(4), number(5)));
+    camera.forward = glm::normalize(target - camera.eye);
+    camera.vertical_fov = 0.4f + 1.5f * number(6);
+    cameras.push_back(camera);
+  }
+  return cameras;
+}
 
 inline Scene own_scene(const std::string& name) {
   return load_scene(std::filesystem::path(LANTERN_SOURCE_DIR) / "scenes" / name).scene;

@@ -164,23 +164,6 @@ void expect_same(const test::RasterStage& stage, VolumeMethod method, std::size_
   EXPECT_GT(all.compared, all.lit);
 }
 
-/// Eyes anywhere in the scene's box, many of them inside volumes.
-std::vector<Camera> random_cameras(const Bounds& box, int count) {
-  std::vector<Camera> cameras;
-  for (int i = 0; i < count; ++i) {
-    const auto number = [&](std::uint64_t n) {
-      return to_unit_float(hash(static_cast<std::uint64_t>(i), n));
-    };
-    Camera camera;
-    camera.eye = glm::mix(box.low, box.high, Vec3(number(0), number(1), number(2)));
-    const Vec3 target = glm::mix(box.low, box.high, Vec3(number(3), number(4), number(5)));
-    camera.forward = glm::normalize(target - camera.eye);
-    camera.vertical_fov = 0.4f + 1.5f * number(6);
-    cameras.push_back(camera);
-  }
-  return cameras;
-}
-
 class ShadowsTest : public ::testing::TestWithParam<gl::Api> {
  protected:
   gl::Context context_{{.api = GetParam(), .device = {}}};
@@ -194,26 +177,26 @@ TEST_P(ShadowsTest, CornellBox) {
 
 TEST_P(ShadowsTest, CornellBoxFromAnywhere) {
   const test::RasterStage stage(test::own_scene("cornell_box.scene"));
-  expect_same(stage, VolumeMethod::kExact, 40, random_cameras(stage.world.bounds, 24));
+  expect_same(stage, VolumeMethod::kExact, 40, test::random_cameras(stage.world.bounds, 24));
 }
 
 TEST_P(ShadowsTest, TwoRooms) {
   const test::RasterStage stage(test::own_scene("two_rooms.scene"));
-  expect_same(stage, VolumeMethod::kExact, 40, random_cameras(stage.world.bounds, 24));
+  expect_same(stage, VolumeMethod::kExact, 40, test::random_cameras(stage.world.bounds, 24));
 }
 
 TEST_P(ShadowsTest, Balls) {
   const test::RasterStage stage(test::room_of_balls(16, 16));
-  std::vector<Camera> cameras = random_cameras(stage.world.bounds, 8);
+  std::vector<Camera> cameras = test::random_cameras(stage.world.bounds, 8);
   cameras.push_back(stage.scene.cameras.front());
   expect_same(stage, VolumeMethod::kExact, 20, cameras);
 }
 
 TEST_P(ShadowsTest, FromBehindTheSame) {
   const test::RasterStage cornell(test::own_scene("cornell_box.scene"));
-  expect_same(cornell, VolumeMethod::kZFail, 20, random_cameras(cornell.world.bounds, 6));
+  expect_same(cornell, VolumeMethod::kZFail, 20, test::random_cameras(cornell.world.bounds, 6));
   const test::RasterStage balls(test::room_of_balls(8, 8));
-  expect_same(balls, VolumeMethod::kZFail, 10, random_cameras(balls.world.bounds, 6));
+  expect_same(balls, VolumeMethod::kZFail, 10, test::random_cameras(balls.world.bounds, 6));
 }
 
 /// How the masks of two methods differ, light by light.
@@ -244,7 +227,7 @@ TEST_P(ShadowsTest, ClassicZPassIsRightJustOutsideOfAllVolumes) {
   const VirtualLights lights = stage.lights(16);
   const LightGroup group = group_lights(lights, {}, stage.world.coordinate_scale()).front();
   int inside = 0, outside = 0;
-  for (const Camera& camera : random_cameras(stage.world.bounds, 8)) {
+  for (const Camera& camera : test::random_cameras(stage.world.bounds, 8)) {
     const auto right = exact.draw(camera, group.points);
     const auto classic = z_pass.draw(camera, group.points);
     for (std::size_t light = 0; light < group.points.size(); ++light) {
@@ -270,7 +253,7 @@ TEST_P(ShadowsTest, TheSidesThatAreShownSumUpToLightAndShadow) {
   Both z_pass(stage, VolumeMethod::kZPass, ClipRange::kFarIs0);
   const VirtualLights lights = stage.lights(4);
   const LightGroup group = group_lights(lights, {}, stage.world.coordinate_scale()).front();
-  for (const Camera& camera : random_cameras(stage.world.bounds, 4)) {
+  for (const Camera& camera : test::random_cameras(stage.world.bounds, 4)) {
     const auto masks = z_pass.draw(camera, group.points);
     for (std::size_t light = 0; light < group.points.size(); ++light) {
       z_pass.shadows.draw_sides(group.points[light], z_pass.view_of(camera), z_pass.framebuffer);
@@ -291,7 +274,7 @@ TEST_P(ShadowsTest, ZFailIsTheSameEverywhere) {
   Both z_fail(stage, VolumeMethod::kZFail, ClipRange::kFarIs0);
   const VirtualLights lights = stage.lights(16);
   const LightGroup group = group_lights(lights, {}, stage.world.coordinate_scale()).front();
-  for (const Camera& camera : random_cameras(stage.world.bounds, 8)) {
+  for (const Camera& camera : test::random_cameras(stage.world.bounds, 8)) {
     const auto right = exact.draw(camera, group.points);
     const auto behind = z_fail.draw(camera, group.points);
     for (std::size_t light = 0; light < group.points.size(); ++light) {
@@ -302,7 +285,7 @@ TEST_P(ShadowsTest, ZFailIsTheSameEverywhere) {
 
 TEST_P(ShadowsTest, WithoutClipControl) {
   const test::RasterStage stage(test::own_scene("cornell_box.scene"));
-  const std::vector<Camera> cameras = random_cameras(stage.world.bounds, 6);
+  const std::vector<Camera> cameras = test::random_cameras(stage.world.bounds, 6);
   expect_same(stage, VolumeMethod::kExact, 20, cameras, ClipRange::kFarIs1);
   expect_same(stage, VolumeMethod::kZFail, 20, cameras, ClipRange::kFarIs1);
 }
@@ -334,7 +317,7 @@ TEST_P(HundredCameras, SeeWhatShadowRaysSee) {
   const EdgeList list(stage.world);
   Difference all;
   std::size_t pairs = 0, inside = 0;
-  for (const Camera& camera : random_cameras(stage.world.bounds, kCameras)) {
+  for (const Camera& camera : test::random_cameras(stage.world.bounds, kCameras)) {
     const Difference d = both.compare(camera, lights);
     EXPECT_LT(d.share(), kOneView)
         << "from " << camera.eye.x << ' ' << camera.eye.y << ' ' << camera.eye.z;
@@ -367,7 +350,7 @@ TEST_P(ShadowsTest, Sibenik) {
   scene.lights.push_back(lamp);
   const test::RasterStage stage(std::move(scene));
   Bounds box = stage.world.bounds;
-  expect_same(stage, VolumeMethod::kExact, 10, random_cameras(box, 4));
+  expect_same(stage, VolumeMethod::kExact, 10, test::random_cameras(box, 4));
 }
 
 }  // namespace

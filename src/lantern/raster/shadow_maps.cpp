@@ -3,6 +3,7 @@
 
 #include "lantern/core/hash.h"
 #include "lantern/gl/check.h"
+#include "lantern/raster/corner_buffer.h"
 #include "lantern/raster/draw_state.h"
 #include "lantern/raster/triangle_texture.h"
 #include "lantern/scene/surface.h"
@@ -20,25 +21,6 @@ namespace {
 constexpr GLuint kFramesBinding = 1;
 constexpr std::size_t kTexelBytes = 2 * sizeof(std::uint32_t);
 constexpr int kMapsAcross = 4;  // as in shaders/shadow_maps.glsl
-
-/// A value for each corner of the triangles in this order, from one of the world's arrays.
-template <typename T>
-gl::Buffer by_corner(const World& world, std::span<const std::uint32_t> order,
-                     const std::vector<T>& values) {
-  std::vector<T> corners;
-  corners.reserve(3 * order.size());
-  for (const std::uint32_t t : order) {
-    for (int i = 0; i < 3; ++i) corners.push_back(values[world.triangles[t][i]]);
-  }
-  return gl::Buffer(std::span<const T>(corners));
-}
-
-gl::Buffer numbers_of(std::span<const std::uint32_t> order) {
-  std::vector<std::uint32_t> corners;
-  corners.reserve(3 * order.size());
-  for (const std::uint32_t t : order) corners.insert(corners.end(), 3, t);
-  return gl::Buffer(std::span<const std::uint32_t>(corners));
-}
 
 constexpr GLuint kPosition = 0, kNumber = 1, kTexcoord = 2, kColour = 3;
 
@@ -116,7 +98,7 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
     array_.add({location, &attributes_.back(), channels, integer});
   };
   add(by_corner(world, casters_.order, world.positions), kPosition, 3);
-  add(numbers_of(casters_.order), kNumber, 1, true);
+  add(numbers_by_corner(casters_.order), kNumber, 1, true);
   const bool any_holes =
       std::any_of(casters_.batches.begin(), casters_.batches.end(),
                   [](const Batch& batch) { return batch.material_with_holes.has_value(); });

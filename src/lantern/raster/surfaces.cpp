@@ -2,6 +2,7 @@
 #include "lantern/raster/surfaces.h"
 
 #include "lantern/gl/check.h"
+#include "lantern/raster/corner_buffer.h"
 #include "lantern/raster/draw_state.h"
 #include "lantern/scene/surface.h"
 #include "lantern/trace/tracer.h"
@@ -27,27 +28,6 @@ gl::Texture upload(const Texture& texture) {
     uploaded.write<float>(texture.linear);
   }
   return uploaded;
-}
-
-gl::Buffer numbers(std::span<const std::uint32_t> order) {
-  std::vector<std::uint32_t> of_corners;
-  of_corners.reserve(3 * order.size());
-  for (const std::uint32_t t : order) of_corners.insert(of_corners.end(), 3, t);
-  return gl::Buffer(std::span<const std::uint32_t>(of_corners));
-}
-
-/// One of the world's arrays, a value for each corner of the triangles in this order.
-template <typename T>
-gl::Buffer by_corner(const World& world, std::span<const std::uint32_t> order,
-                     const std::vector<T>& values) {
-  std::vector<T> corners;
-  corners.reserve(3 * order.size());
-  for (const std::uint32_t t : order) {
-    for (int corner = 0; corner < 3; ++corner) {
-      corners.push_back(values[world.triangles[t][corner]]);
-    }
-  }
-  return gl::Buffer(std::span<const T>(corners));
 }
 
 gl::Buffer geometric_normals(const World& world, std::span<const std::uint32_t> order) {
@@ -106,7 +86,7 @@ Surfaces::Surfaces(const Scene& scene, const World& world, const gl::ShaderFiles
   buffers_.reserve(6);
   buffers_.push_back(by_corner(world, order, world.positions));
   buffers_.push_back(geometric_normals(world, order));
-  buffers_.push_back(numbers(order));
+  buffers_.push_back(numbers_by_corner(order));
   vertices_.emplace(std::initializer_list<gl::Attribute>{
       {.location = kPosition, .buffer = &buffers_[0]},
       {.location = kGeometricNormal, .buffer = &buffers_[1]},
