@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which triangle a light sees through a texel of its map, and how far it is.
+// Which triangle a light sees through a texel of its map, how far it is, and its patch.
 #include "shaders/shadow_map.glsl"
 #if HOLES
 #include "shaders/opacity.glsl"
@@ -9,12 +9,13 @@ in float v_alpha;
 
 in float v_depth;
 flat in uint v_triangle;
+flat in uint v_patch;
 
 uniform ivec2 u_corner;  // of the map in the texture
 uniform int u_side;      // 1: inside the diamond alone, -1: outside, 0: all of the map
 uniform int u_on;        // and, if 0, on it
 
-layout(location = 0) out uvec2 o_texel;
+layout(location = 0) out uvec4 o_texel;
 
 void main() {
   if (u_side * off_diamond(ivec2(gl_FragCoord.xy) - u_corner) > u_on) discard;
@@ -23,5 +24,5 @@ void main() {
   if (is_hole(v_triangle, ivec2(gl_FragCoord.xy) - u_corner, v_texcoord, v_alpha)) discard;
   number |= kHoles;
 #endif
-  o_texel = uvec2(number, floatBitsToUint(v_depth));
+  o_texel = uvec4(number, floatBitsToUint(v_depth), v_patch, 0u);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A shadow map is a square of u_map_size texels a side, a power of two. Directions unfold into it as an octahedron does,
-// whose faces are perspective pictures each: what is straight stays straight. The hemisphere around
-// the frame's z lies inside the diamond, the other one outside, so that two lights that shine to
-// one side share a map.
+// A shadow map is a square of u_map_size texels a side, a power of two. Directions unfold into it
+// as an octahedron does, whose faces are perspective pictures each: what is straight stays straight.
+// The hemisphere around the frame's z lies inside the diamond, the other one outside, so that two
+// lights that shine to one side share a map.
 uniform int u_map_size;
 
 /// Less than 0 inside the diamond, more outside, 0 on it.
@@ -11,10 +11,18 @@ int off_diamond(ivec2 texel) {
   return off_centre.x + off_centre.y - u_map_size;
 }
 
-// What a texel says: the number of the triangle that it sees and 1, or 0, and how far that is.
-// Finished maps say of the block of two by two whose first texel it is how far its furthest is, and
-// in the highest bits which others see triangles that those before them do not. What a triangle with
-// holes stops is known for each texel alone.
+// What a texel sees: the number of a triangle and 1, or 0. What a triangle with holes stops is known
+// for each texel alone.
 const uint kNumber = 0x0fffffffu;
 const uint kHoles = 0x10000000u;
-const uint kOthers = 29u;
+
+// What the block of two by two texels sees whose first one this is: the patch of its nearest
+// triangle, or 0; how far the nearest of other patches is and, in the lower half, the furthest of
+// all: the first 16 bits of floats.
+const uint kInfinitelyFar = 0x7f00u;
+const uint kNoPatch = 0xffffffffu;  // of what has holes, and of several
+
+const int kCell = 4;  // blocks a side of a cell, of which the same is known
+
+float near_of(uint depths) { return uintBitsToFloat(depths & 0xffff0000u); }
+float far_of(uint depths) { return uintBitsToFloat(depths << 16); }

@@ -2,9 +2,10 @@
 // Triangles of the scene as a light sees them, into its shadow map.
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in uint a_triangle;
+layout(location = 2) in uint a_patch;
 #if HOLES
-layout(location = 2) in vec2 a_texcoord;
-layout(location = 3) in vec4 a_colour;
+layout(location = 3) in vec2 a_texcoord;
+layout(location = 4) in vec4 a_colour;
 out vec2 v_texcoord;
 out float v_alpha;
 #endif
@@ -15,11 +16,13 @@ uniform vec3 u_depth;  // what grows with the distance from the light is the dot
 
 out float v_depth;
 flat out uint v_triangle;
+flat out uint v_patch;
 
 void main() {
   vec3 place = a_position - u_origin;
   v_depth = dot(u_depth, place);
   v_triangle = a_triangle;
+  v_patch = a_patch;
 #if HOLES
   v_texcoord = a_texcoord;
   v_alpha = a_colour.a;

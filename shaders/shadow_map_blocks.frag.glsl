@@ -1,30 +1,37 @@
 // SPDX-License-Identifier: MIT
-// Finishes maps: what each block of two by two texels sees.
+// Finishes maps: what each texel sees, and each block of two by two.
 #include "shaders/shadow_map.glsl"
 
 uniform highp usampler2D u_texels;
 uniform bool u_halves;  // two lights a map
 
-layout(location = 0) out uvec2 o_texel;
+layout(location = 0) out uvec4 o_block;
+layout(location = 1) out uvec4 o_number;
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy), in_map = at & (u_map_size - 1);
   int side = off_diamond(in_map);
-  const uint kFar = 0x7f000000u;  // further than anything
-  uvec2 seen[4];
+  uvec3 seen[4];  // number, depth, patch
   for (int i = 0; i < 4; ++i) {
     ivec2 texel = min(in_map + ivec2(i & 1, i >> 1), ivec2(u_map_size - 1));
-    seen[i] = texelFetch(u_texels, at - in_map + texel, 0).xy;
+    seen[i] = texelFetch(u_texels, at - in_map + texel, 0).xyz;
     if (u_halves && side * off_diamond(texel) <= 0) seen[i] = seen[0];
-    if (seen[i].x == 0u || (seen[i].x & kHoles) != 0u) seen[i].y = kFar;
+    if (seen[i].x == 0u) seen[i].yz = uvec2(kInfinitelyFar << 16, 0u);
   }
-  uint others = 0u, depth = seen[0].y;
-  for (int i = 1; i < 4; ++i) {
-    bool is_new = true;
-    for (int j = 0; j < i; ++j) is_new = is_new && seen[i].x != seen[j].x;
-    is_new = is_new || (seen[i].x & kHoles) != 0u;
-    if (is_new) others |= 1u << uint(i - 1);
-    depth = max(depth, seen[i].y);  // bits of floats are in their order
+  uint nearest = seen[0].y, far = 0u, first = seen[0].z;
+  for (int i = 0; i < 4; ++i) {
+    bool has_holes = (seen[i].x & kHoles) != 0u;
+    far = max(far, has_holes ? kInfinitelyFar << 16 : seen[i].y);  // floats' bits are in their order
+    if (has_holes) seen[i].yz = uvec2(0u, kNoPatch);
+    if (seen[i].y < nearest) {
+      nearest = seen[i].y;
+      first = seen[i].z;
+    }
   }
-  o_texel = uvec2(seen[0].x | (others << kOthers), depth);
+  uint beyond = kInfinitelyFar << 16;
+  for (int i = 0; i < 4; ++i) {
+    if (seen[i].z != first) beyond = min(beyond, seen[i].y);
+  }
+  o_block = uvec4(first, (beyond & 0xffff0000u) | ((far + 0xffffu) >> 16), 0u, 0u);
+  o_number = uvec4(seen[0].x, 0u, 0u, 0u);
 }

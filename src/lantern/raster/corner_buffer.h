@@ -25,12 +25,18 @@ gl::Buffer by_corner(const World& world, std::span<const std::uint32_t> order,
   return gl::Buffer(std::span<const T>(corners));
 }
 
-/// The number of its triangle for each corner of the triangles in this order.
-inline gl::Buffer numbers_by_corner(std::span<const std::uint32_t> order) {
+/// A value of its triangle for each corner of the triangles in this order.
+template <typename Value>
+gl::Buffer for_corners(std::span<const std::uint32_t> order, const Value& value) {
   std::vector<std::uint32_t> corners;
   corners.reserve(3 * order.size());
-  for (const std::uint32_t t : order) corners.insert(corners.end(), 3, t);
+  for (const std::uint32_t t : order) corners.insert(corners.end(), 3, value(t));
   return gl::Buffer(std::span<const std::uint32_t>(corners));
+}
+
+/// The number of its triangle for each corner of the triangles in this order.
+inline gl::Buffer numbers_by_corner(std::span<const std::uint32_t> order) {
+  return for_corners(order, [](std::uint32_t t) { return t; });
 }
 
 }  // namespace lantern

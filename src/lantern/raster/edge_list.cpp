@@ -76,13 +76,7 @@ std::vector<Vec4> find_walls(const World& world) {
   const float rounding = rounding_of(world);
   std::vector<Vec4> walls;
   for (std::size_t i = 0; i < candidates && walls.size() < kMostWalls; ++i) {
-    const uvec3 t = world.triangles[order[i]];
-    const bool known = std::any_of(walls.begin(), walls.end(), [&](const Vec4& wall) {
-      return lies_in(wall, world.positions[t.x], rounding) &&
-             lies_in(wall, world.positions[t.y], rounding) &&
-             lies_in(wall, world.positions[t.z], rounding);
-    });
-    if (known) continue;
+    if (wall_of(world, order[i], walls)) continue;
     const Vec4 plane = supporting_plane(world, order[i], rounding);
     if (!std::isnan(plane.w)) walls.push_back(plane);
   }
@@ -92,6 +86,20 @@ std::vector<Vec4> find_walls(const World& world) {
 bool is_inside(std::span<const Vec4> walls, const LightPoint& point) {
   return std::all_of(walls.begin(), walls.end(),
                      [&](const Vec4& wall) { return glm::dot(wall, point) >= 0.0f; });
+}
+
+std::optional<std::size_t> wall_of(const World& world, std::uint32_t triangle,
+                                   std::span<const Vec4> walls) {
+  const float rounding = rounding_of(world);
+  const uvec3 t = world.triangles[triangle];
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    if (lies_in(walls[w], world.positions[t.x], rounding) &&
+        lies_in(walls[w], world.positions[t.y], rounding) &&
+        lies_in(walls[w], world.positions[t.z], rounding)) {
+      return w;
+    }
+  }
+  return std::nullopt;
 }
 
 EdgeList::EdgeList(const World& world, std::span<const Vec4> walls) {

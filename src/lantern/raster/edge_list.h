@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,10 @@ std::vector<Vec4> find_walls(const World& world);
 
 /// Whether the point lies on the inner side of all walls.
 bool is_inside(std::span<const Vec4> walls, const LightPoint& point);
+
+/// The first wall that the triangle lies in.
+std::optional<std::size_t> wall_of(const World& world, std::uint32_t triangle,
+                                   std::span<const Vec4> walls);
 
 /// Of two welded vertices. Seen from the outside of the volume the quad is to, from, from extruded,
 /// to extruded, counter-clockwise.

@@ -5,6 +5,7 @@
 
 #include "lantern/gl/objects.h"
 #include "lantern/gl/program.h"
+#include "lantern/raster/map_masks.h"
 #include "lantern/raster/masked_shading.h"
 #include "lantern/raster/raster_lights.h"
 #include "lantern/raster/shadow_maps.h"
@@ -13,11 +14,9 @@
 #include "lantern/raster/surfaces.h"
 #include "lantern/raster/view.h"
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <span>
-#include <vector>
 
 namespace lantern {
 
@@ -49,10 +48,10 @@ class Lighting {
 
   const GBuffer& g_buffer() const { return g_buffer_; }
   /// In W/m², RGBA32F.
-  const Target& irradiance() const { return irradiance_[0]; }
+  const Target& irradiance() const { return irradiance_; }
 
  private:
-  void add(const LightGroup& group);
+  void add(const LightGroup& group, const gl::Texture& mask);
 
   const Surfaces& surfaces_;
   Shadows shadows_;
@@ -61,10 +60,9 @@ class Lighting {
   gl::Texture mask_;
   gl::Framebuffer mask_framebuffer_;
   gl::Buffer light_block_;
-  std::optional<MaskedShading> masked_;  // where masks alone say what is seen
-  std::vector<gl::Program> by_maps_;     // else: a program for each formula
-  std::array<Target, 2> irradiance_;     // what there is, and that with a group of lights more
-  gl::VertexArray no_vertices_;
+  std::optional<MapMasks> map_masks_;
+  MaskedShading shading_;
+  Target irradiance_;
 };
 
 }  // namespace lantern

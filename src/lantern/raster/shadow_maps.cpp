@@ -19,10 +19,11 @@ namespace lantern {
 namespace {
 
 constexpr GLuint kFramesBinding = 1;
-constexpr std::size_t kTexelBytes = 2 * sizeof(std::uint32_t);
+constexpr std::size_t kTexelBytes = 3 * sizeof(std::uint32_t);
 constexpr int kMapsAcross = 4;  // as in shaders/shadow_maps.glsl
+constexpr int kCell = 4;        // as in shaders/shadow_map.glsl
 
-constexpr GLuint kPosition = 0, kNumber = 1, kTexcoord = 2, kColour = 3;
+constexpr GLuint kPosition = 0, kNumber = 1, kPatch = 2, kTexcoord = 3, kColour = 4;
 
 /// Each light's holes are its own.
 std::uint32_t seed_of(const MapFrame& frame) {
@@ -42,15 +43,10 @@ int rows_of(const LightGroup& group) {
   return map_place(group.formula, group.records.size() - 1).tile / kMapsAcross + 1;
 }
 
-std::size_t bytes_of(const gl::Texture& texels) {
-  return kTexelBytes * static_cast<std::size_t>(texels.width()) *
-         static_cast<std::size_t>(texels.height());
-}
-
 }  // namespace
 
 ShadowMaps::Unfinished::Unfinished(int width, int height)
-    : texels(gl::Format::kRg32ui, width, height),
+    : texels(gl::Format::kRgba32ui, width, height),
       depth(gl::Format::kDepth32f, width, height),
       framebuffer({&texels}, &depth) {}
 
@@ -58,20 +54,28 @@ ShadowMaps::Casters ShadowMaps::casters_of(const Scene& scene, const World& worl
                                            MapCasters which) {
   const auto material = [&](std::uint32_t t) { return index(world.materials[t]); };
   const auto holes = [&](std::uint32_t t) { return has_holes(scene.materials[material(t)]); };
+  const std::vector<Vec4> walls = find_walls(world);
+  // Solid ones first, then those of each wall, then those of each material.
+  std::vector<std::size_t> batch_of(world.size());
   Casters casters;
   for (std::uint32_t t = 0; t < world.size(); ++t) {
-    if (which == MapCasters::kAll || holes(t)) casters.order.push_back(t);
+    if (which == MapCasters::kWithHoles && !holes(t)) continue;
+    casters.order.push_back(t);
+    const std::optional<std::size_t> wall = wall_of(world, t, walls);
+    batch_of[t] = holes(t) ? 1 + walls.size() + material(t) : wall ? 1 + *wall : 0;
   }
-  const auto batch = [&](std::uint32_t t) { return holes(t) ? material(t) + 1 : 0; };
   std::stable_sort(casters.order.begin(), casters.order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return batch(a) < batch(b); });
+                   [&](std::uint32_t a, std::uint32_t b) { return batch_of[a] < batch_of[b]; });
   for (std::size_t first = 0; first < casters.order.size();) {
+    const std::size_t batch = batch_of[casters.order[first]];
     std::size_t end = first;
-    while (end < casters.order.size() && batch(casters.order[end]) == batch(casters.order[first])) {
-      ++end;
-    }
+    while (end < casters.order.size() && batch_of[casters.order[end]] == batch) ++end;
     Batch& added = casters.batches.emplace_back();
-    if (holes(casters.order[first])) added.material_with_holes = material(casters.order[first]);
+    if (batch > walls.size()) {
+      added.material_with_holes = batch - 1 - walls.size();
+    } else if (batch > 0) {
+      added.wall = walls[batch - 1];
+    }
     added.clusters = make_clusters(world, std::span(casters.order).subspan(first, end - first),
                                    static_cast<std::uint32_t>(first));
     first = end;
@@ -79,26 +83,38 @@ ShadowMaps::Casters ShadowMaps::casters_of(const Scene& scene, const World& worl
   return casters;
 }
 
+std::size_t ShadowMaps::Maps::bytes() const {
+  return kTexelBytes * static_cast<std::size_t>(blocks.width()) *
+         static_cast<std::size_t>(blocks.height());
+}
+
 ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& surfaces,
                        const gl::ShaderFiles& files, const ShadowMapOptions& options)
-    : bounds_(world.bounds),
+    : triangles_(scene, world),
+      bounds_(world.bounds),
       options_(options),
       surfaces_(surfaces),
       solid_(caster_program(files, false)),
       with_holes_(caster_program(files, true)),
       blocks_(files, "shaders/full_screen.vert.glsl", "shaders/shadow_map_blocks.frag.glsl"),
+      cells_(files, "shaders/full_screen.vert.glsl", "shaders/shadow_map_cells.frag.glsl"),
       casters_(casters_of(scene, world, options.casters)),
       indices_(std::span<const std::uint32_t>()),
       frames_(std::span<const MapFrame>()),
-      array_({}, &indices_),
-      triangles_(triangle_texture(scene, world)) {
-  attributes_.reserve(4);
+      array_({}, &indices_) {
+  attributes_.reserve(5);
   const auto add = [&](gl::Buffer buffer, GLuint location, int channels, bool integer = false) {
     attributes_.push_back(std::move(buffer));
     array_.add({location, &attributes_.back(), channels, integer});
   };
   add(by_corner(world, casters_.order, world.positions), kPosition, 3);
-  add(numbers_by_corner(casters_.order), kNumber, 1, true);
+  std::vector<std::uint32_t> numbers(world.size());
+  const ConvexPatches& patches = triangles_.patches;
+  for (std::uint32_t i = 0; i < world.size(); ++i) numbers[patches.order[i]] = i;
+  add(for_corners(casters_.order, [&](std::uint32_t t) { return numbers[t]; }), kNumber, 1, true);
+  add(for_corners(casters_.order,
+                  [&](std::uint32_t t) { return patches.patches[patches.patch_of[t]].first + 1; }),
+      kPatch, 1, true);
   const bool any_holes =
       std::any_of(casters_.batches.begin(), casters_.batches.end(),
                   [](const Batch& batch) { return batch.material_with_holes.has_value(); });
@@ -138,9 +154,9 @@ void ShadowMaps::keep(std::span<const std::vector<LightGroup>> groups) {
 
 /// Groups come round in the same order: of too many the one that was used last comes back last.
 void ShadowMaps::make_room(std::size_t bytes) {
-  for (const Maps& maps : kept_) bytes += bytes_of(maps.texels);
+  for (const Maps& maps : kept_) bytes += maps.bytes();
   while (bytes > options_.bytes && !kept_.empty()) {
-    bytes -= bytes_of(kept_.back().texels);
+    bytes -= kept_.back().bytes();
     kept_.pop_back();
   }
 }
@@ -155,15 +171,17 @@ void ShadowMaps::draw(const LightGroup& group, StageTimes& times) {
   const int size = size_of(group.formula);
   const int width = kMapsAcross * size, height = rows_of(group) * size;
   make_room(kTexelBytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  kept_.push_back({group.formula, group.records, map_frames(group, bounds_, size),
-                   gl::Texture(gl::Format::kRg32ui, width, height)});
+  kept_.push_back({group.formula, group.records, group.points, map_frames(group, bounds_, size),
+                   gl::Texture(gl::Format::kRg32ui, width, height),
+                   gl::Texture(gl::Format::kRg32ui, width / kCell, height / kCell),
+                   gl::Texture(gl::Format::kR32ui, width, height)});
   times.begin(Stage::kMaps);
   draw(kept_.back());
   times.end();
 }
 
 void ShadowMaps::draw(const Maps& maps) {
-  const int width = maps.texels.width(), height = maps.texels.height();
+  const int width = maps.blocks.width(), height = maps.blocks.height();
   const Unfinished& unfinished =
       unfinished_.try_emplace({width, height}, width, height).first->second;
   unfinished.framebuffer.bind();
@@ -178,11 +196,15 @@ void ShadowMaps::draw(const Maps& maps) {
   drawn_ += maps.frames.size();
   reset_draw_state();
 
-  const gl::Framebuffer finished({&maps.texels});
+  const gl::Framebuffer finished({&maps.blocks, &maps.numbers});
   finished.bind();
   blocks_.set("u_texels", 0, unfinished.texels);
   blocks_.set("u_map_size", size_of(maps.formula));
   blocks_.set("u_halves", maps.formula == LightFormula::kSurface ? 1 : 0);
+  gl::draw_full_screen(no_vertices_);
+  const gl::Framebuffer coarse({&maps.cells});
+  coarse.bind();
+  cells_.set("u_blocks", 0, maps.blocks);
   gl::draw_full_screen(no_vertices_);
   gl::check("drawing shadow maps");
 }
@@ -195,7 +217,12 @@ void ShadowMaps::draw_light(const Maps& maps, std::size_t light) {
   std::vector<std::uint32_t> indices;
   std::vector<std::size_t> ends;  // of each face's part of each batch
   for (const Batch& batch : casters_.batches) {
+    const bool none = batch.wall && is_inside(std::span(&*batch.wall, 1), maps.points[light]);
     for (const MapFace& face : faces) {
+      if (none) {
+        ends.push_back(indices.size());
+        continue;
+      }
       for (const Cluster& cluster : batch.clusters) {
         if (!may_lie_inside(cluster, face.origin, face.planes)) continue;
         const std::size_t first = indices.size();
@@ -235,15 +262,14 @@ void ShadowMaps::draw_light(const Maps& maps, std::size_t light) {
   }
 }
 
-void ShadowMaps::set_in(const gl::Program& program, int unit) {
+void ShadowMaps::set_blocks(const gl::Program& program, int unit) {
   const Maps& maps = kept_.back();
   std::array<MapFrame, kLightsInGroup> frames;
   std::copy(maps.frames.begin(), maps.frames.end(), frames.begin());
   frames_.write(std::span<const MapFrame>(frames));
   frames_.bind_as_uniforms(kFramesBinding);
-  program.set("u_map_texels", unit, maps.texels);
   program.set("u_map_size", size_of(maps.formula));
-  program.set("u_triangles", unit + 1, triangles_);
+  program.set("u_map_blocks", unit, maps.blocks);
 }
 
 }  // namespace lantern

@@ -7,10 +7,12 @@
 #include "lantern/gl/objects.h"
 #include "lantern/gl/program.h"
 #include "lantern/raster/clusters.h"
+#include "lantern/raster/edge_list.h"
 #include "lantern/raster/map_faces.h"
 #include "lantern/raster/raster_lights.h"
 #include "lantern/raster/stage_times.h"
 #include "lantern/raster/surfaces.h"
+#include "lantern/raster/triangle_texture.h"
 #include "lantern/scene/scene.h"
 #include "lantern/scene/world.h"
 
@@ -44,8 +46,12 @@ class ShadowMaps {
   void keep(std::span<const std::vector<LightGroup>> groups);
   /// Draws the group's maps unless they are there still.
   void draw(const LightGroup& group, StageTimes& times);
-  /// The maps of the group that was drawn last, on two texture units from `unit` on.
-  void set_in(const gl::Program& program, int unit);
+  /// What shaders/shadow_maps.glsl takes of the group that was drawn last, on a texture unit.
+  void set_blocks(const gl::Program& program, int unit);
+  /// The same of coarse cells, and the numbers of the triangles that texels see.
+  const gl::Texture& cells() const { return kept_.back().cells; }
+  const gl::Texture& numbers() const { return kept_.back().numbers; }
+  const TriangleTextures& triangles() const { return triangles_; }
 
   /// What a program with shaders/shadow_maps.glsl needs once.
   static void prepare(const gl::Program& program);
@@ -57,8 +63,10 @@ class ShadowMaps {
   struct Maps {
     LightFormula formula;
     std::vector<LightRecord> lights;
+    std::vector<LightPoint> points;
     std::vector<MapFrame> frames;
-    gl::Texture texels;
+    gl::Texture blocks, cells, numbers;
+    std::size_t bytes() const;
   };
 
   /// What maps are drawn into first.
@@ -68,9 +76,11 @@ class ShadowMaps {
     Unfinished(int width, int height);
   };
 
-  /// Casters that are drawn with the same uniforms: the solid ones, or those of a material.
+  /// Casters that are drawn with the same uniforms or left out together: the solid ones, those in a
+  /// wall, or those of a material.
   struct Batch {
     std::optional<std::size_t> material_with_holes;
+    std::optional<Vec4> wall;       // nothing in it is between two points on its positive side
     std::vector<Cluster> clusters;  // of the order of all casters
   };
   struct Casters {
@@ -85,15 +95,15 @@ class ShadowMaps {
   void draw(const Maps& maps);
   void draw_light(const Maps& maps, std::size_t light);
 
+  TriangleTextures triangles_;
   Bounds bounds_;
   ShadowMapOptions options_;
   const Surfaces& surfaces_;
-  gl::Program solid_, with_holes_, blocks_;
+  gl::Program solid_, with_holes_, blocks_, cells_;
   Casters casters_;
   std::vector<gl::Buffer> attributes_;
   gl::Buffer indices_, frames_;
   gl::VertexArray array_;
-  gl::Texture triangles_;
   std::map<std::pair<int, int>, Unfinished> unfinished_;  // by size
   gl::VertexArray no_vertices_;
   std::list<Maps> kept_;  // the one that was used last is the last

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Which of up to 32 lights each pixel sees, as the bits of a mask, by shadow maps: what they tell
+// of tiles of pixels at once and, where that does not suffice, of each pixel's point.
+#pragma once
+
+#include "lantern/gl/objects.h"
+#include "lantern/gl/program.h"
+#include "lantern/raster/raster_lights.h"
+#include "lantern/raster/shadow_maps.h"
+#include "lantern/raster/stage_times.h"
+#include "lantern/raster/surfaces.h"
+
+#include <array>
+
+namespace lantern {
+
+class MapMasks {
+ public:
+  /// Of views of this size. Keeps a reference to `maps`.
+  MapMasks(ShadowMaps& maps, const gl::ShaderFiles& files, int width, int height);
+
+  /// The points that the next masks are for.
+  void look_at(const GBuffer& g_buffer);
+  /// Bit i of the result (RGBA8, the lowest byte in red): whether light i of the group is seen and
+  /// has its bit in `asked`. Draws the group's maps where they are not there.
+  const gl::Texture& draw(const LightGroup& group, const GBuffer& g_buffer,
+                          const gl::Texture& asked, StageTimes& times);
+
+ private:
+  struct Programs {
+    gl::Program of_tiles, of_pixels;
+    Programs(const gl::ShaderFiles& files, LightFormula formula);
+  };
+
+  ShadowMaps& maps_;
+  gl::Program owners_, tiles_;
+  std::array<Programs, kLightFormulas> programs_;
+  gl::Texture owner_, spheres_, normals_, told_, mask_;
+  gl::Framebuffer owner_framebuffer_, tile_framebuffer_, told_framebuffer_, mask_framebuffer_;
+  gl::VertexArray no_vertices_;
+};
+
+}  // namespace lantern
