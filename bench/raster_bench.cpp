@@ -93,14 +93,14 @@ int main(int argc, char** argv) {
   ShadowMaps maps(scene, world, surfaces, files, {});
   unshadowed.set_block("Lights", 0);
   StencilShadows shadows(world, files, VolumeMethod::kExact);
-  MaskedShading shading(files, kWidth, kHeight, 0);
+  MaskedShading shading(files, {kWidth, kHeight, 0, false});
   StageTimes times;
   GBuffer g_buffer(kWidth, kHeight);
   gl::Texture mask(gl::Format::kRgba8, kWidth, kHeight);
   gl::Framebuffer mask_framebuffer({&mask}, &g_buffer.depth);
   gl::Texture sum(gl::Format::kRgba32f, kWidth, kHeight),
-      next(gl::Format::kRgba32f, kWidth, kHeight);
-  gl::Framebuffer sum_framebuffer({&sum}), next_framebuffer({&next});
+      irradiance(gl::Format::kRgba32ui, kWidth, kHeight);
+  gl::Framebuffer sum_framebuffer({&sum});
   gl::VertexArray none;
   gl::Buffer block(std::span<const LightRecord>(groups[0].records));
   const View view =
@@ -140,14 +140,14 @@ int main(int argc, char** argv) {
       with_block(group);
       shading.add(group, g_buffer, mask);
     }
-    shading.copy_to(sum);
+    shading.copy_to(irradiance);
   });
   const double map_drawing = cost([&] {
     maps.keep({});
     for (const LightGroup& group : groups) maps.draw(group, times);
   });
   // Whole frames but for the resolve: surfaces are drawn in a hundredth of the time.
-  Lighting lighting(surfaces, {.volumes = nullptr, .maps = &maps}, times, files, kWidth, kHeight);
+  Lighting lighting(surfaces, {.volumes = nullptr, .maps = &maps}, times, files, {kWidth, kHeight});
   const double map_shading = cost([&] { lighting.draw(view, groups, [] { return true; }); });
   const EdgeList list(world, find_walls(world));
   double edges = 0;

@@ -1,42 +1,40 @@
 // SPDX-License-Identifier: MIT
-// TILE * TILE shares of the light stand side by side in one picture, the whole picture's pixel (x, y)
-// in share (x, y) modulo TILE. Each is looked up between the four of its pixels around a pixel.
+// Each pixel of a tile of TILE x TILE has its share of the lights. Fragments make as many pixels of
+// a row as a texel has channels, and textures hold them so: red, green and blue of four neighbours.
 #include "shaders/octahedral.glsl"
 
-uniform highp usampler2D u_points;
-uniform highp usampler2D u_reflectances;
-uniform sampler2D u_shares;
+const int kColumns = TILE < 4 ? TILE : 4;
+
+uniform highp usampler2D u_tiles;  // see shaders/interleaved_tiles.frag.glsl
 uniform float u_plane_distance;
-
-struct Surface {
-  vec3 position, shading, geometric;
-};
-
-Surface surface_at(ivec2 at) {
-  uvec4 bits = texelFetch(u_points, at, 0);
-  return Surface(uintBitsToFloat(bits.xyz), unpack_unit(bits.w),
-                 unpack_unit(texelFetch(u_reflectances, at, 0).w));
-}
-
-/// The cosine between the shading normals, or 0 if the other pixel is not in the surface's plane.
-float likeness(Surface surface, ivec2 other) {
-  uvec4 bits = texelFetch(u_points, other, 0);
-  float off = dot(surface.geometric, uintBitsToFloat(bits.xyz) - surface.position);
-  return abs(off) > u_plane_distance ? 0.0 : dot(surface.shading, unpack_unit(bits.w));
-}
-
-/// Of a pixel so far away along one axis; over the two of each share that are around the sum is the
-/// same.
-float nearness(int away) { return 1.0 - abs(float(away)) / (float(TILE) + 0.5); }
-const float kNearnessOfShare = 2.0 - float(TILE) / (float(TILE) + 0.5);
 
 /// Above this cosine a surface counts as flat.
 const float kFlat = 0.999;
+/// In place of the normal of a tile that is not: no unit vector.
+const uint kRough = 0xffffffffu;
 
-bool is_inside(ivec2 at) {
-  return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, textureSize(u_points, 0)));
+/// Whether a point is in the plane of another, up to a distance, and has about its normal.
+bool is_in_plane(uvec4 plane, uvec4 point) {
+  if (point == uvec4(0u) || plane == uvec4(0u)) return point == plane;  // the sky
+  vec3 normal = unpack_unit(plane.w);
+  float off = dot(normal, uintBitsToFloat(point.xyz) - uintBitsToFloat(plane.xyz));
+  return abs(off) < u_plane_distance && dot(normal, unpack_unit(point.w)) > kFlat;
 }
 
-vec3 share_at(ivec2 at) {
-  return texelFetch(u_shares, (at % TILE) * (textureSize(u_shares, 0) / TILE) + at / TILE, 0).rgb;
+/// Whether both tiles are parts of one plane.
+bool are_joined(ivec2 tile, ivec2 other) {
+  ivec2 size = textureSize(u_tiles, 0);
+  if (any(lessThan(other, ivec2(0))) || any(greaterThanEqual(other, size))) return false;
+  uvec4 a = texelFetch(u_tiles, tile, 0), b = texelFetch(u_tiles, other, 0);
+  return a.w != kRough && b.w != kRough && is_in_plane(a, b);
 }
+
+/// The one that has this coordinate's share, at it or, if that is off this tile and not joined to
+/// it, in this tile.
+int within(int at, int tile, bool before, bool after) {
+  if (at < tile * TILE) return before ? at : at + TILE;
+  return at < (tile + 1) * TILE || after ? at : at - TILE;
+}
+
+/// Of a pixel so far away along one axis; the sum over all of a share is 1.
+float nearness(int away) { return max(0.0, 1.0 - abs(float(away)) / float(TILE)); }

@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: MIT
-// The shares of the row around each pixel brought together, as on a flat surface; alpha says
-// whether the row is one.
+// The shares of each row brought together, each by a tent over its two pixels around: what the
+// shares of that row of a tile give.
 #include "shaders/interleaved.glsl"
 
-layout(location = 0) out vec4 o_row;
+uniform highp usampler2D u_shares;  // side by side
+
+layout(location = 0) out vec4 o_red;
+layout(location = 1) out vec4 o_green;
+layout(location = 2) out vec4 o_blue;
 
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  Surface surface = surface_at(at);
-  o_row = vec4(0.0, 0.0, 0.0, 1.0);
-  for (int away = -TILE; away < TILE; ++away) {
-    ivec2 other = at + ivec2(away, 0);
-    if (!is_inside(other) || likeness(surface, other) < kFlat) {
-      o_row.a = 0.0;
-      return;
-    }
-    o_row.rgb += (nearness(away) / kNearnessOfShare) * share_at(other);
+  ivec2 at = ivec2(kColumns, 1) * ivec2(gl_FragCoord.xy), tile = at / TILE;
+  bool before = are_joined(tile, tile - ivec2(1, 0)), after = are_joined(tile, tile + ivec2(1, 0));
+  ivec2 share_size = textureSize(u_shares, 0) / TILE;
+  o_red = o_green = o_blue = vec4(0.0);
+  for (int x = 1 - TILE; x < kColumns + TILE - 1; ++x) {
+    ivec2 other = ivec2(within(at.x + x, tile.x, before, after), at.y);
+    uvec4 bits = texelFetch(u_shares, (other % TILE) * share_size + other / TILE, 0);
+    vec3 irradiance = uintBitsToFloat(bits.rgb);
+    vec4 near = vec4(nearness(x), nearness(x - 1), nearness(x - 2), nearness(x - 3));
+    o_red += near * irradiance.r;
+    o_green += near * irradiance.g;
+    o_blue += near * irradiance.b;
   }
 }

@@ -2,7 +2,21 @@
 // Radiance: what the surface emits and what it reflects of its irradiance.
 uniform highp usampler2D u_reflectances;
 uniform sampler2D u_emissions;
-uniform sampler2D u_irradiance;
+#ifdef TILE
+#include "shaders/interleaved.glsl"
+uniform sampler2D u_red, u_green, u_blue;
+
+vec3 irradiance_of(ivec2 at) {
+  ivec2 quad = ivec2(at.x / kColumns, at.y);
+  int i = at.x % kColumns;
+  return vec3(texelFetch(u_red, quad, 0)[i], texelFetch(u_green, quad, 0)[i],
+              texelFetch(u_blue, quad, 0)[i]);
+}
+#else
+uniform highp usampler2D u_irradiance;
+
+vec3 irradiance_of(ivec2 at) { return uintBitsToFloat(texelFetch(u_irradiance, at, 0).rgb); }
+#endif
 
 layout(location = 0) out vec4 o_radiance;
 
@@ -12,7 +26,7 @@ void main() {
   vec4 radiance = texelFetch(u_emissions, at, 0);
   if (radiance.a != 0.0) {
     vec3 reflectance = uintBitsToFloat(texelFetch(u_reflectances, at, 0).xyz);
-    radiance.rgb += reflectance * texelFetch(u_irradiance, at, 0).rgb * kInvPi;
+    radiance.rgb += reflectance * irradiance_of(at) * kInvPi;
   }
   o_radiance = radiance;
 }

@@ -8,13 +8,15 @@
 uniform highp usampler2D u_points;
 uniform highp usampler2D u_reflectances;
 uniform sampler2D u_mask;
-uniform sampler2D u_sum_0, u_sum_1, u_sum_2, u_sum_3;
+uniform highp usampler2D u_sum_0, u_sum_1, u_sum_2, u_sum_3;
 uniform int u_count;
 
-layout(location = 0) out vec4 o_irradiance_0;
-layout(location = 1) out vec4 o_irradiance_1;
-layout(location = 2) out vec4 o_irradiance_2;
-layout(location = 3) out vec4 o_irradiance_3;
+// The irradiance's bits and, with LIT, those of the lights that would give something, were nothing
+// between.
+layout(location = 0) out uvec4 o_irradiance_0;
+layout(location = 1) out uvec4 o_irradiance_1;
+layout(location = 2) out uvec4 o_irradiance_2;
+layout(location = 3) out uvec4 o_irradiance_3;
 
 ivec2 pixel_of(int strip) {
   ivec2 at = ivec2(gl_FragCoord.xy);
@@ -38,22 +40,43 @@ uint mask_of(int strip) {
   return bytes.r | (bytes.g << 8) | (bytes.b << 16) | (bytes.a << 24);
 }
 
+struct Sum {
+  vec3 irradiance;
+  uint lit;
+};
+
+Sum sum_of(highp usampler2D before) {
+  return Sum(uintBitsToFloat(texelFetch(before, ivec2(gl_FragCoord.xy), 0).rgb), 0u);
+}
+
+Sum with_light(Sum sum, Light light, Point p, uint bit, uint mask) {
+#if LIT
+  vec3 irradiance = irradiance_from(light, p);
+  if (irradiance != vec3(0.0)) sum.lit |= bit;
+  if ((mask & bit) != 0u) sum.irradiance += irradiance;
+#else
+  if ((mask & bit) != 0u) sum.irradiance += irradiance_from(light, p);
+#endif
+  return sum;
+}
+
+uvec4 packed_sum(Sum sum) { return uvec4(floatBitsToUint(sum.irradiance), sum.lit); }
+
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
   Point p0 = point_of(0), p1 = point_of(1), p2 = point_of(2), p3 = point_of(3);
   uvec4 mask = uvec4(mask_of(0), mask_of(1), mask_of(2), mask_of(3));
-  vec3 sum0 = texelFetch(u_sum_0, at, 0).rgb, sum1 = texelFetch(u_sum_1, at, 0).rgb;
-  vec3 sum2 = texelFetch(u_sum_2, at, 0).rgb, sum3 = texelFetch(u_sum_3, at, 0).rgb;
+  Sum sum0 = sum_of(u_sum_0), sum1 = sum_of(u_sum_1), sum2 = sum_of(u_sum_2);
+  Sum sum3 = sum_of(u_sum_3);
   for (int i = 0; i < u_count; ++i) {
     Light light = u_lights[i];
-    bvec4 seen = notEqual(mask & (1u << uint(i)), uvec4(0u));
-    if (seen.x) sum0 += irradiance_from(light, p0);
-    if (seen.y) sum1 += irradiance_from(light, p1);
-    if (seen.z) sum2 += irradiance_from(light, p2);
-    if (seen.w) sum3 += irradiance_from(light, p3);
+    uint bit = 1u << uint(i);
+    sum0 = with_light(sum0, light, p0, bit, mask.x);
+    sum1 = with_light(sum1, light, p1, bit, mask.y);
+    sum2 = with_light(sum2, light, p2, bit, mask.z);
+    sum3 = with_light(sum3, light, p3, bit, mask.w);
   }
-  o_irradiance_0 = vec4(sum0, 1.0);
-  o_irradiance_1 = vec4(sum1, 1.0);
-  o_irradiance_2 = vec4(sum2, 1.0);
-  o_irradiance_3 = vec4(sum3, 1.0);
+  o_irradiance_0 = packed_sum(sum0);
+  o_irradiance_1 = packed_sum(sum1);
+  o_irradiance_2 = packed_sum(sum2);
+  o_irradiance_3 = packed_sum(sum3);
 }

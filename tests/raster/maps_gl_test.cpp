@@ -45,8 +45,8 @@ struct Maps {
       : stage(with),
         surfaces(with.scene, with.world, files),
         maps(with.scene, with.world, surfaces, files, options),
-        by_maps(surfaces, {.volumes = nullptr, .maps = &maps}, times, files, kWidth, kHeight),
-        unshadowed(surfaces, {}, times, files, kWidth, kHeight) {}
+        by_maps(surfaces, {.volumes = nullptr, .maps = &maps}, times, files, {kWidth, kHeight}),
+        unshadowed(surfaces, {}, times, files, {kWidth, kHeight}) {}
 
   std::vector<LightGroup> groups(const VirtualLights& lights) const {
     return group_lights(lights, {}, stage.world.coordinate_scale());
@@ -59,7 +59,13 @@ struct Maps {
                                          .offset = Vec2(0.3f, 0.6f),
                                          .radius = stage.world.bounds.radius()});
     lighting.draw(view, lights, [] { return true; });
-    return lighting.irradiance().framebuffer.read<float>();
+    const gl::Texture irradiance(gl::Format::kRgba32ui, kWidth, kHeight);
+    lighting.shading().copy_to(irradiance);
+    std::vector<float> channels;
+    for (const std::uint32_t bits : gl::Framebuffer({&irradiance}).read<std::uint32_t>()) {
+      channels.push_back(std::bit_cast<float>(bits));
+    }
+    return channels;
   }
 
   Difference compare(const Camera& camera, const VirtualLights& lights) {

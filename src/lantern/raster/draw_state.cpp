@@ -24,12 +24,15 @@ void clip_control(bool near_is_1) {
 void apply(const DrawState& state, const View& view) {
   clip_control(view.near_is_1);
   enable(GL_DEPTH_TEST, state.depth != DepthUse::kNone);
-  if (state.depth == DepthUse::kFillGaps) {
+  if (state.depth == DepthUse::kReplace) {
+    glDepthFunc(GL_ALWAYS);
+  } else if (state.depth == DepthUse::kFillGaps) {
     glDepthFunc(view.near_is_1 ? GL_GEQUAL : GL_LEQUAL);
   } else {
     glDepthFunc(view.near_is_1 ? GL_GREATER : GL_LESS);
   }
-  glDepthMask(state.depth == DepthUse::kDraw ? GL_TRUE : GL_FALSE);
+  const bool writes_depth = state.depth == DepthUse::kDraw || state.depth == DepthUse::kReplace;
+  glDepthMask(writes_depth ? GL_TRUE : GL_FALSE);
   const GLboolean colour = state.colour ? GL_TRUE : GL_FALSE;
   glColorMask(colour, colour, colour, colour);
   enable(GL_BLEND, state.add);
@@ -58,6 +61,14 @@ void apply(const DrawState& state, const View& view) {
     case StencilUse::kTake:
       glStencilFunc(GL_EQUAL, state.reference, kAllBits);
       glStencilOp(GL_ZERO, GL_ZERO, GL_ZERO);
+      break;
+    case StencilUse::kMark:
+      glStencilFunc(GL_ALWAYS, state.reference, kAllBits);
+      glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+      break;
+    case StencilUse::kMatch:
+      glStencilFunc(GL_EQUAL, state.reference, kAllBits);
+      glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
       break;
   }
 }

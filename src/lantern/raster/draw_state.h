@@ -9,14 +9,17 @@ namespace lantern {
 enum class DepthUse {
   kNone,
   kDraw,
-  kTest,     // pass what is nearer, write nothing
-  kFillGaps  // pass what is not further, write nothing
+  kTest,      // pass what is nearer, write nothing
+  kFillGaps,  // pass what is not further, write nothing
+  kReplace    // pass and write all
 };
 enum class StencilUse {
   kNone,
   kCountPassing,  // +1 for fronts that are nearer, -1 for backs
   kCountHidden,   // +1 for backs that are not nearer, -1 for fronts
-  kTake           // pass where it is `reference`, and zero it everywhere
+  kTake,          // pass where it is `reference`, and zero it everywhere
+  kMark,          // make it `reference`
+  kMatch          // pass where it is `reference`
 };
 
 struct DrawState {

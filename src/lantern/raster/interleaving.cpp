@@ -2,8 +2,10 @@
 #include "lantern/raster/interleaving.h"
 
 #include "lantern/gl/check.h"
+#include "lantern/raster/draw_state.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 namespace lantern {
@@ -26,43 +28,189 @@ std::vector<std::vector<std::uint32_t>> share_out(const VirtualLights& lights, s
   return sets;
 }
 
+namespace {
+
+// As shaders/interleaved_lights.frag.glsl reads them: three texels a light, how many there are.
+constexpr int kLightTexels = 3 * static_cast<int>(kLightsInGroup);
+
+int in_tiles(int pixels, int tile) { return (pixels + tile - 1) / tile; }
+
+/// Pixels of a row that a fragment makes.
+int columns_of(int tile) { return std::min(tile, 4); }
+
+gl::Program program_of(const gl::ShaderFiles& files, const char* fragment, int tile) {
+  return gl::Program(files, "shaders/full_screen.vert.glsl", fragment,
+                     Interleaving::definitions(tile));
+}
+
+}  // namespace
+
+std::vector<gl::Definition> Interleaving::definitions(int tile) {
+  return {{"TILE", std::to_string(tile)}};
+}
+
+Interleaving::Quads::Quads(int width, int height, const gl::Texture* stencil)
+    : red(gl::Format::kRgba32f, width, height),
+      green(gl::Format::kRgba32f, width, height),
+      blue(gl::Format::kRgba32f, width, height),
+      framebuffer({&red, &green, &blue}, stencil) {}
+
+void Interleaving::Quads::set_in(const gl::Program& program, int unit) const {
+  program.set("u_red", unit, red);
+  program.set("u_green", unit + 1, green);
+  program.set("u_blue", unit + 2, blue);
+}
+
+Interleaving::Round::Round(const glm::ivec2& size, int tile)
+    : shares(gl::Format::kRgba32ui, size.x, size.y),
+      masks(gl::Format::kRgba8, size.x, size.y),
+      groups(static_cast<std::size_t>(tile * tile)) {}
+
+// A tile sees about a hundredth of the scene; further off its plane is another surface.
 Interleaving::Interleaving(const gl::ShaderFiles& files, int width, int height, int tile,
                            float radius)
     : tile_(tile),
-      radius_(radius),
-      add_rows_(files, "shaders/full_screen.vert.glsl", "shaders/interleaved_rows.frag.glsl",
-                {{"TILE", std::to_string(tile)}}),
-      filter_(files, "shaders/full_screen.vert.glsl", "shaders/interleaved.frag.glsl",
-              {{"TILE", std::to_string(tile)}}),
-      shares_(gl::Format::kRgba32f, (width + tile - 1) / tile * tile,
-              (height + tile - 1) / tile * tile),
-      rows_(gl::Format::kRgba32f, width, height),
-      irradiance_(gl::Format::kRgba32f, width, height) {}
+      plane_distance_(1e-2f * radius),
+      split_(program_of(files, "shaders/interleaved_split.frag.glsl", tile)),
+      find_tiles_(program_of(files, "shaders/interleaved_tiles.frag.glsl", tile)),
+      add_rows_(program_of(files, "shaders/interleaved_rows.frag.glsl", tile)),
+      add_columns_(program_of(files, "shaders/interleaved_columns.frag.glsl", tile)),
+      tiles_(gl::Format::kRgba32ui, in_tiles(width, tile), in_tiles(height, tile)),
+      shares_(gl::Format::kRgba32ui, tile * tiles_.width(), tile * tiles_.height()),
+      lights_(gl::Format::kRgba32f, kLightTexels + 1, tile * tile),
+      stencil_(gl::Format::kDepth32fStencil8, in_tiles(width, columns_of(tile)), height),
+      tile_framebuffer_({&tiles_}),
+      rows_(stencil_.width(), height, nullptr),
+      irradiance_{Quads(stencil_.width(), height, &stencil_),
+                  Quads(stencil_.width(), height, &stencil_)} {
+  for (int formula = 0; formula < kLightFormulas; ++formula) {
+    std::vector<gl::Definition> with = definitions(tile);
+    with.push_back({"KIND", std::to_string(formula)});
+    add_lights_.emplace_back(files, "shaders/full_screen.vert.glsl",
+                             "shaders/interleaved_lights.frag.glsl", with);
+  }
+}
 
-void Interleaving::take(const Target& irradiance, int x, int y) {
-  const int columns = shares_.width() / tile_, rows = shares_.height() / tile_;
-  irradiance.framebuffer.bind();
-  shares_.bind(0);
-  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, x * columns, y * rows, 0, 0, columns, rows);
+void Interleaving::split(const GBuffer& whole, const View& of_share, const GBuffer& share) const {
+  share.framebuffer.bind();
+  apply({.depth = DepthUse::kReplace}, of_share);
+  glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(of_share), 0);
+  split_.set("u_points", 0, whole.points);
+  split_.set("u_reflectances", 1, whole.reflectances);
+  split_.set("u_emissions", 2, whole.emissions);
+  split_.set("u_depth", 3, whole.depth);
+  split_.set("u_first", of_share.first);
+  gl::draw_full_screen(no_vertices_);
+  reset_draw_state();
+  gl::check("splitting");
+}
+
+void Interleaving::clear() {
+  for (Round& round : rounds_) {
+    std::fill(round.groups.begin(), round.groups.end(), std::nullopt);
+  }
+}
+
+std::size_t Interleaving::number(const glm::ivec2& share) const {
+  return static_cast<std::size_t>(share.y * tile_ + share.x);
+}
+
+void Interleaving::take(const glm::ivec2& share, const LightGroup& group, const Lighting& done) {
+  const std::size_t i = number(share);
+  auto round = std::find_if(rounds_.begin(), rounds_.end(),
+                            [&](const Round& r) { return !r.groups[i].has_value(); });
+  if (round == rounds_.end()) {
+    rounds_.emplace_back(glm::ivec2(shares_.width(), shares_.height()), tile_);
+    round = std::prev(rounds_.end());
+  }
+  round->groups[i] = group;
+  const int x = share.x * tiles_.width(), y = share.y * tiles_.height();
+  done.shading().copy_to(round->shares, x, y);
+  const gl::Framebuffer masks({&done.mask()});
+  masks.bind();
+  round->masks.bind(0);
+  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, x, y, 0, 0, tiles_.width(), tiles_.height());
   gl::check("copying a share of the lights");
 }
 
-const Target& Interleaving::filter(const GBuffer& g_buffer) {
-  // A tile sees about this much of a surface; further off its plane is another one.
-  constexpr float kSamePlane = 1e-2f;
-  const auto run = [&](const gl::Program& program, const Target& target) {
-    program.set("u_points", 0, g_buffer.points);
-    program.set("u_reflectances", 1, g_buffer.reflectances);
-    program.set("u_shares", 2, shares_);
-    program.set("u_plane_distance", kSamePlane * radius_);
-    target.framebuffer.bind();
-    gl::draw_full_screen(no_vertices_);
+void Interleaving::take(const glm::ivec2& share, const MaskedShading& irradiance) {
+  irradiance.copy_to(shares_, share.x * tiles_.width(), share.y * tiles_.height());
+}
+
+/// What the lights of this formula give where the surface is not flat.
+void Interleaving::add(const GBuffer& whole, const Round& round, LightFormula formula, bool first) {
+  std::vector<Vec4> texels;
+  for (const std::optional<LightGroup>& group : round.groups) {
+    const std::size_t end = texels.size() + static_cast<std::size_t>(kLightTexels);
+    std::size_t count = 0;
+    if (group && group->formula == formula) {
+      count = group->records.size();
+      for (const LightRecord& light : group->records) {
+        texels.insert(texels.end(), {light.place, light.axis, light.strength});
+      }
+    }
+    texels.resize(end);
+    texels.emplace_back(static_cast<float>(count));
+  }
+  lights_.write(std::span<const float>(&texels[0].x, 4 * texels.size()));
+  const gl::Program& program = add_lights_[static_cast<std::size_t>(formula)];
+  program.set("u_plane_distance", plane_distance_);
+  program.set("u_points", 0, whole.points);
+  program.set("u_reflectances", 1, whole.reflectances);
+  program.set("u_shares", 2, round.shares);
+  program.set("u_masks", 3, round.masks);
+  program.set("u_lights_of", 4, lights_);
+  program.set("u_first_lights", first ? 1 : 0);
+  irradiance_[0].set_in(program, 5);
+  irradiance_[1].framebuffer.bind();
+  gl::draw_full_screen(no_vertices_);
+  std::swap(irradiance_[0], irradiance_[1]);
+}
+
+void Interleaving::filter(const GBuffer& whole, const View& view) {
+  find_tiles_.set("u_plane_distance", plane_distance_);
+  find_tiles_.set("u_points", 0, whole.points);
+  tile_framebuffer_.bind();
+  gl::draw_full_screen(no_vertices_);
+
+  add_rows_.set("u_plane_distance", plane_distance_);
+  add_rows_.set("u_tiles", 0, tiles_);
+  add_rows_.set("u_shares", 1, shares_);
+  rows_.framebuffer.bind();
+  gl::draw_full_screen(no_vertices_);
+
+  struct Pass {
+    const Round& round;
+    LightFormula formula;
   };
-  run(add_rows_, rows_);
-  filter_.set("u_rows", 3, rows_.texture);
-  run(filter_, irradiance_);
+  std::vector<Pass> passes;
+  for (const Round& round : rounds_) {
+    for (int i = 0; i < kLightFormulas; ++i) {
+      const auto formula = static_cast<LightFormula>(i);
+      const bool any =
+          std::any_of(round.groups.begin(), round.groups.end(),
+                      [&](const auto& group) { return group && group->formula == formula; });
+      if (any) passes.push_back({round, formula});
+    }
+  }
+
+  // Flat ones, into what the last of the passes over the others will draw into.
+  irradiance_[passes.size() % 2].framebuffer.bind();
+  apply({.stencil = StencilUse::kMark, .reference = 1}, view);
+  glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(view), 0);
+  add_columns_.set("u_plane_distance", plane_distance_);
+  add_columns_.set("u_tiles", 0, tiles_);
+  rows_.set_in(add_columns_, 1);
+  gl::draw_full_screen(no_vertices_);
+
+  apply({.stencil = StencilUse::kMatch, .reference = 0}, view);
+  for (const Pass& pass : passes) add(whole, pass.round, pass.formula, &pass == &passes.front());
+  reset_draw_state();
   gl::check("filtering");
-  return irradiance_;
+}
+
+void Interleaving::set_irradiance(const gl::Program& program, int unit) const {
+  irradiance_[0].set_in(program, unit);
 }
 
 }  // namespace lantern

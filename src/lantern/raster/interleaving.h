@@ -9,8 +9,10 @@
 #include "lantern/lights/virtual_lights.h"
 #include "lantern/raster/lighting.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace lantern {
@@ -20,23 +22,56 @@ namespace lantern {
 std::vector<std::vector<std::uint32_t>> share_out(const VirtualLights& lights, std::size_t shares,
                                                   std::size_t turn);
 
-/// Pictures of every tile-th pixel, side by side, and what they are filtered into.
+/// Every tile-th pixel is a small picture with its share of the lights; Interleaving cuts them out
+/// of the whole and brings what their lights give back to all pixels.
 class Interleaving {
  public:
-  /// Keeps nothing. `tile` x `tile` pixels take all lights together.
+  /// `tile` x `tile` pixels take all lights together; `radius` is the scene's.
   Interleaving(const gl::ShaderFiles& files, int width, int height, int tile, float radius);
 
-  /// The picture of pixels (x, y) + tile * (column, row).
-  void take(const Target& irradiance, int x, int y);
-  /// The irradiance of all pixels by all lights. `g_buffer` is that of the whole picture.
-  const Target& filter(const GBuffer& g_buffer);
+  /// Of pixels (x, y) + tile * (column, row) what `whole` has.
+  void split(const GBuffer& whole, const View& of_share, const GBuffer& share) const;
+  /// Forgets all lights.
+  void clear();
+  /// A group of lights of this share was done, the first, the next, ...
+  void take(const glm::ivec2& share, const LightGroup& group, const Lighting& done);
+  /// And all of them.
+  void take(const glm::ivec2& share, const MaskedShading& irradiance);
+
+  /// The irradiance of all pixels by all lights, in W/m².
+  void filter(const GBuffer& whole, const View& view);
+  /// For shaders/resolve.frag.glsl, on three texture units from `unit` on.
+  void set_irradiance(const gl::Program& program, int unit) const;
+  /// What its shaders, and those that read its irradiance, are defined with.
+  static std::vector<gl::Definition> definitions(int tile);
 
  private:
+  /// Red, green and blue of up to four pixels of a row a texel.
+  struct Quads {
+    gl::Texture red, green, blue;
+    gl::Framebuffer framebuffer;
+    Quads(int width, int height, const gl::Texture* stencil);
+    void set_in(const gl::Program& program, int unit) const;
+  };
+  /// One group of each share.
+  struct Round {
+    gl::Texture shares, masks;
+    std::vector<std::optional<LightGroup>> groups;
+    Round(const glm::ivec2& size, int tile);
+  };
+
+  std::size_t number(const glm::ivec2& share) const;
+  void add(const GBuffer& whole, const Round& round, LightFormula formula, bool first);
+
   int tile_;
-  float radius_;
-  gl::Program add_rows_, filter_;
-  gl::Texture shares_;
-  Target rows_, irradiance_;
+  float plane_distance_;
+  gl::Program split_, find_tiles_, add_rows_, add_columns_;
+  std::vector<gl::Program> add_lights_;  // by formula
+  gl::Texture tiles_, shares_, lights_, stencil_;
+  gl::Framebuffer tile_framebuffer_;
+  std::vector<Round> rounds_;
+  Quads rows_;
+  std::array<Quads, 2> irradiance_;  // what there is, and that with lights more
   gl::VertexArray no_vertices_;
 };
 

@@ -12,25 +12,36 @@ constexpr GLuint kLightsBinding = 0;
 }  // namespace
 
 Lighting::Lighting(const Surfaces& surfaces, const Shadows& shadows, StageTimes& times,
-                   const gl::ShaderFiles& files, int width, int height)
+                   const gl::ShaderFiles& files, const LightingOptions& options)
     : surfaces_(surfaces),
       shadows_(shadows),
       times_(times),
-      g_buffer_(width, height),
-      mask_(gl::Format::kRgba8, width, height),
+      g_buffer_(options.width, options.height),
+      mask_(gl::Format::kRgba8, options.width, options.height),
       mask_framebuffer_({&mask_}, &g_buffer_.depth),
       light_block_(std::span<const LightRecord>()),
-      shading_(files, width, height, kLightsBinding),
-      irradiance_(gl::Format::kRgba32f, width, height) {
-  if (shadows.maps) map_masks_.emplace(*shadows.maps, files, width, height);
+      shading_(files, {.width = options.width,
+                       .height = options.height,
+                       .lights_binding = kLightsBinding,
+                       .tells_lit = options.tells_lit}) {
+  if (shadows.maps) map_masks_.emplace(*shadows.maps, files, options.width, options.height);
 }
 
 void Lighting::draw(const View& view, std::span<const LightGroup> groups,
                     const std::function<bool()>& group_done) {
   times_.begin(Stage::kSurfaces);
   surfaces_.draw(view, g_buffer_);
-  if (map_masks_) map_masks_->look_at(g_buffer_);
   times_.end();
+  light(view, groups, group_done);
+}
+
+void Lighting::light(const View& view, std::span<const LightGroup> groups,
+                     const std::function<bool()>& group_done) {
+  if (map_masks_) {
+    times_.begin(Stage::kSurfaces);
+    map_masks_->look_at(g_buffer_);
+    times_.end();
+  }
   shading_.clear();
   if (!shadows_.volumes) {
     const float all_seen[4] = {1.0f, 1.0f, 1.0f, 1.0f};
@@ -39,10 +50,10 @@ void Lighting::draw(const View& view, std::span<const LightGroup> groups,
   }
   for (const LightGroup& group : groups) {
     if (shadows_.volumes) shadows_.volumes->draw(group.points, view, mask_framebuffer_, times_);
-    add(group, map_masks_ ? map_masks_->draw(group, g_buffer_, mask_, times_) : mask_);
+    last_mask_ = map_masks_ ? &map_masks_->draw(group, g_buffer_, mask_, times_) : &mask_;
+    add(group, *last_mask_);
     if (!group_done()) break;
   }
-  shading_.copy_to(irradiance_.texture);
 }
 
 /// What the lights of the mask's bits give.

@@ -20,35 +20,35 @@
 
 namespace lantern {
 
-/// A picture that one draws into.
-struct Target {
-  gl::Texture texture;
-  gl::Framebuffer framebuffer;
-
-  Target(gl::Format format, int width, int height)
-      : texture(format, width, height), framebuffer({&texture}) {}
-};
-
 /// Who says which lights are seen; where both are there both must say so.
 struct Shadows {
   StencilShadows* volumes = nullptr;
   ShadowMaps* maps = nullptr;
 };
 
+struct LightingOptions {
+  int width, height;       // of views
+  bool tells_lit = false;  // see MaskedShading::copy_to()
+};
+
 class Lighting {
  public:
-  /// Keeps references to `surfaces`, `times` and what `shadows` points to. Views must have this
-  /// size.
+  /// Keeps references to `surfaces`, `times` and what `shadows` points to.
   Lighting(const Surfaces& surfaces, const Shadows& shadows, StageTimes& times,
-           const gl::ShaderFiles& files, int width, int height);
+           const gl::ShaderFiles& files, const LightingOptions& options);
 
   /// Calls `group_done` after each group; once it returns false the rest is left out.
   void draw(const View& view, std::span<const LightGroup> groups,
             const std::function<bool()>& group_done);
+  /// As draw(), of what is in g_buffer() already.
+  void light(const View& view, std::span<const LightGroup> groups,
+             const std::function<bool()>& group_done);
 
   const GBuffer& g_buffer() const { return g_buffer_; }
-  /// In W/m², RGBA32F.
-  const Target& irradiance() const { return irradiance_; }
+  /// Which lights of the group that was done last are seen, RGBA8.
+  const gl::Texture& mask() const { return *last_mask_; }
+  /// What there is by now.
+  const MaskedShading& shading() const { return shading_; }
 
  private:
   void add(const LightGroup& group, const gl::Texture& mask);
@@ -61,8 +61,8 @@ class Lighting {
   gl::Framebuffer mask_framebuffer_;
   gl::Buffer light_block_;
   std::optional<MapMasks> map_masks_;
+  const gl::Texture* last_mask_ = &mask_;
   MaskedShading shading_;
-  Target irradiance_;
 };
 
 }  // namespace lantern

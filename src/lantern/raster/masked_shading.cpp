@@ -13,35 +13,36 @@ namespace {
 constexpr std::array kSums = {"u_sum_0", "u_sum_1", "u_sum_2", "u_sum_3"};
 
 gl::Program shade_program(const gl::ShaderFiles& files, LightFormula formula,
-                          GLuint lights_binding) {
+                          const MaskedShadingOptions& options) {
   gl::Program program(files, "shaders/full_screen.vert.glsl", "shaders/shade_masked.frag.glsl",
-                      {{"KIND", std::to_string(static_cast<int>(formula))}});
-  program.set_block("Lights", lights_binding);
+                      {{"KIND", std::to_string(static_cast<int>(formula))},
+                       {"LIT", options.tells_lit ? "1" : "0"}});
+  program.set_block("Lights", options.lights_binding);
   return program;
 }
 
 }  // namespace
 
 MaskedShading::Strips::Strips(int width, int rows)
-    : textures{gl::Texture(gl::Format::kRgba32f, width, rows),
-               gl::Texture(gl::Format::kRgba32f, width, rows),
-               gl::Texture(gl::Format::kRgba32f, width, rows),
-               gl::Texture(gl::Format::kRgba32f, width, rows)},
+    : textures{gl::Texture(gl::Format::kRgba32ui, width, rows),
+               gl::Texture(gl::Format::kRgba32ui, width, rows),
+               gl::Texture(gl::Format::kRgba32ui, width, rows),
+               gl::Texture(gl::Format::kRgba32ui, width, rows)},
       framebuffer({&textures[0], &textures[1], &textures[2], &textures[3]}) {}
 
-MaskedShading::MaskedShading(const gl::ShaderFiles& files, int width, int height,
-                             GLuint lights_binding)
-    : height_(height),
-      rows_((height + kStrips - 1) / kStrips),
-      shade_{shade_program(files, LightFormula::kSurface, lights_binding),
-             shade_program(files, LightFormula::kPunctual, lights_binding),
-             shade_program(files, LightFormula::kDirectional, lights_binding)},
-      sums_{Strips(width, rows_), Strips(width, rows_)} {}
+MaskedShading::MaskedShading(const gl::ShaderFiles& files, const MaskedShadingOptions& options)
+    : width_(options.width),
+      height_(options.height),
+      rows_((options.height + kStrips - 1) / kStrips),
+      shade_{shade_program(files, LightFormula::kSurface, options),
+             shade_program(files, LightFormula::kPunctual, options),
+             shade_program(files, LightFormula::kDirectional, options)},
+      sums_{Strips(width_, rows_), Strips(width_, rows_)} {}
 
 void MaskedShading::clear() {
   sums_[0].framebuffer.bind();
-  const float none[4] = {};
-  for (int strip = 0; strip < kStrips; ++strip) glClearBufferfv(GL_COLOR, strip, none);
+  const GLuint none[4] = {};
+  for (int strip = 0; strip < kStrips; ++strip) glClearBufferuiv(GL_COLOR, strip, none);
 }
 
 void MaskedShading::add(const LightGroup& group, const GBuffer& g_buffer, const gl::Texture& mask) {
@@ -60,14 +61,14 @@ void MaskedShading::add(const LightGroup& group, const GBuffer& g_buffer, const 
   gl::check("shading");
 }
 
-void MaskedShading::copy_to(const gl::Texture& irradiance) const {
+void MaskedShading::copy_to(const gl::Texture& irradiance, int x, int y) const {
   sums_[0].framebuffer.bind();
   irradiance.bind(0);
   for (int strip = 0; strip < kStrips; ++strip) {
     const int rows = std::min(rows_, height_ - strip * rows_);
     if (rows <= 0) break;
     glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(strip));
-    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, strip * rows_, 0, 0, irradiance.width(), rows);
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, x, y + strip * rows_, 0, 0, width_, rows);
   }
   gl::check("joining strips");
 }

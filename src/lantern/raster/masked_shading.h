@@ -13,17 +13,24 @@
 
 namespace lantern {
 
+struct MaskedShadingOptions {
+  int width, height;      // of the picture
+  GLuint lights_binding;  // of the uniform block with the lights
+  bool tells_lit;         // see copy_to()
+};
+
 class MaskedShading {
  public:
-  /// Of a picture of this size. The lights are in the uniform block with this binding.
-  MaskedShading(const gl::ShaderFiles& files, int width, int height, GLuint lights_binding);
+  MaskedShading(const gl::ShaderFiles& files, const MaskedShadingOptions& options);
 
   /// No light.
   void clear();
   /// And what the lights of the mask's bits give.
   void add(const LightGroup& group, const GBuffer& g_buffer, const gl::Texture& mask);
-  /// All strips into one picture.
-  void copy_to(const gl::Texture& irradiance) const;
+  /// All strips into one picture (RGBA32UI), from this pixel on: the bits of three floats and, if
+  /// asked for, one for each light of the last group that would give something, were nothing
+  /// between.
+  void copy_to(const gl::Texture& irradiance, int x = 0, int y = 0) const;
 
  private:
   static constexpr int kStrips = 4;
@@ -33,7 +40,7 @@ class MaskedShading {
     Strips(int width, int rows);
   };
 
-  int height_, rows_;
+  int width_, height_, rows_;
   std::array<gl::Program, kLightFormulas> shade_;
   std::array<Strips, 2> sums_;  // what there is, and that with a group of lights more
   gl::VertexArray no_vertices_;

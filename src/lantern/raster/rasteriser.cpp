@@ -102,6 +102,15 @@ LightPoint point_of(const VirtualLights& lights, std::size_t i, float scale) {
   return groups.front().points.front();
 }
 
+/// A picture that one draws into.
+struct Target {
+  gl::Texture texture;
+  gl::Framebuffer framebuffer;
+
+  Target(gl::Format format, int width, int height)
+      : texture(format, width, height), framebuffer({&texture}) {}
+};
+
 /// What a tile of several pixels takes.
 struct Interleaved {
   GBuffer g_buffer;  // of the whole picture
@@ -111,6 +120,11 @@ struct Interleaved {
       : g_buffer(options.width, options.height),
         interleaving(files, options.width, options.height, options.tile, radius) {}
 };
+
+gl::Program resolve_program(const gl::ShaderFiles& files, int tile) {
+  return gl::Program(files, "shaders/full_screen.vert.glsl", "shaders/resolve.frag.glsl",
+                     tile > 1 ? Interleaving::definitions(tile) : std::vector<gl::Definition>());
+}
 
 }  // namespace
 
@@ -127,6 +141,7 @@ struct Rasteriser::State {
   std::optional<Lighting> lighting;
   std::optional<Interleaved> interleaved;
   gl::Program resolve;
+  gl::Texture irradiance;  // where every pixel has all lights
   Target radiance;
   gl::VertexArray no_vertices;
 
@@ -140,7 +155,8 @@ struct Rasteriser::State {
                      .range = gl.has(gl::kClipControl) ? ClipRange::kFarIs0 : ClipRange::kFarIs1},
         surfaces(scene, all, files),
         solid(solid_part(scene, all)),
-        resolve(files, "shaders/full_screen.vert.glsl", "shaders/resolve.frag.glsl"),
+        resolve(resolve_program(files, with.tile)),
+        irradiance(gl::Format::kRgba32ui, with.width, with.height),
         radiance(gl::Format::kRgba32f, with.width, with.height) {
     const bool by_maps = with.shadows == ShadowMethod::kMaps;
     const bool none_solid = solid && solid->triangles.empty();
@@ -155,7 +171,10 @@ struct Rasteriser::State {
                            .casters = by_maps ? MapCasters::kAll : MapCasters::kWithHoles});
     }
     lighting.emplace(surfaces, Shadows{volumes ? &*volumes : nullptr, maps ? &*maps : nullptr},
-                     times, files, view_options.columns(), view_options.rows());
+                     times, files,
+                     LightingOptions{.width = view_options.columns(),
+                                     .height = view_options.rows(),
+                                     .tells_lit = with.tile > 1});
     if (with.tile > 1) interleaved.emplace(files, with, all.bounds.radius());
   }
 
@@ -185,41 +204,62 @@ struct Rasteriser::State {
   /// The radiance of sample number `n` of all pixels.
   void draw(const Camera& camera, std::span<const std::vector<LightGroup>> groups, std::size_t n,
             const std::function<bool()>& group_done) {
-    ViewOptions of_share = view_options;
-    of_share.offset = place_in_pixel(n);
-    for (int y = 0; y < options.tile; ++y) {
-      for (int x = 0; x < options.tile; ++x) {
-        of_share.first = {x, y};
-        lighting->draw(make_view(camera, of_share),
-                       groups[static_cast<std::size_t>(y * options.tile + x)], group_done);
-        if (!interleaved) continue;
-        times.begin(Stage::kFilter);
-        interleaved->interleaving.take(lighting->irradiance(), x, y);
-        times.end();
-      }
+    const View view = view_of_sample(camera, n);
+    if (interleaved) {
+      draw_shares(camera, view, groups, n, group_done);
+    } else {
+      lighting->draw(view, groups[0], group_done);
+      lighting->shading().copy_to(irradiance);
     }
-    if (!interleaved) {
-      draw_radiance(lighting->g_buffer(), lighting->irradiance());
-      return;
-    }
-    times.begin(Stage::kSurfaces);
-    surfaces.draw(view_of_sample(camera, n), interleaved->g_buffer);
-    times.end();
-    times.begin(Stage::kFilter);
-    const Target& irradiance = interleaved->interleaving.filter(interleaved->g_buffer);
-    times.end();
-    draw_radiance(interleaved->g_buffer, irradiance);
-  }
-
-  void draw_radiance(const GBuffer& g_buffer, const Target& irradiance) {
     times.begin(Stage::kResolve);
-    resolve.set("u_reflectances", 0, g_buffer.reflectances);
-    resolve.set("u_emissions", 1, g_buffer.emissions);
-    resolve.set("u_irradiance", 2, irradiance.texture);
+    resolve.set("u_reflectances", 0, whole_g_buffer().reflectances);
+    resolve.set("u_emissions", 1, whole_g_buffer().emissions);
+    if (interleaved) {
+      interleaved->interleaving.set_irradiance(resolve, 2);
+    } else {
+      resolve.set("u_irradiance", 2, irradiance);
+    }
     radiance.framebuffer.bind();
     gl::draw_full_screen(no_vertices);
     times.end();
     gl::check("drawing the radiance");
+  }
+
+  void draw_shares(const Camera& camera, const View& view,
+                   std::span<const std::vector<LightGroup>> groups, std::size_t n,
+                   const std::function<bool()>& group_done) {
+    GBuffer& whole = interleaved->g_buffer;
+    Interleaving& interleaving = interleaved->interleaving;
+    times.begin(Stage::kSurfaces);
+    surfaces.draw(view, whole);
+    times.end();
+    interleaving.clear();
+    ViewOptions of_share = view_options;
+    of_share.offset = place_in_pixel(n);
+    for (of_share.first.y = 0; of_share.first.y < options.tile; ++of_share.first.y) {
+      for (of_share.first.x = 0; of_share.first.x < options.tile; ++of_share.first.x) {
+        const glm::ivec2 share = of_share.first;
+        const View share_view = make_view(camera, of_share);
+        const std::vector<LightGroup>& lights =
+            groups[static_cast<std::size_t>(share.y * options.tile + share.x)];
+        times.begin(Stage::kSurfaces);
+        if (volumes && volumes->needs_depth_of_view()) {
+          surfaces.draw(share_view, lighting->g_buffer());
+        } else {
+          interleaving.split(whole, share_view, lighting->g_buffer());
+        }
+        times.end();
+        std::size_t done = 0;
+        lighting->light(share_view, lights, [&] {
+          interleaving.take(share, lights[done++], *lighting);
+          return group_done();
+        });
+        interleaving.take(share, lighting->shading());
+      }
+    }
+    times.begin(Stage::kFilter);
+    interleaving.filter(whole, view);
+    times.end();
   }
 };
 

@@ -29,6 +29,9 @@ class StencilShadows {
   void draw(std::span<const LightPoint> lights, const View& view,
             const gl::Framebuffer& framebuffer, StageTimes& times);
 
+  /// Whether the depth that volumes are drawn against must be of that very view, to its last bit.
+  bool needs_depth_of_view() const { return method_ == VolumeMethod::kZFail; }
+
   /// How many sides of the volumes of one light each pixel has before its surface: fronts in red,
   /// backs in green of an RGBA8 framebuffer with a depth as above.
   void draw_sides(const LightPoint& light, const View& view, const gl::Framebuffer& framebuffer);
