@@ -63,3 +63,15 @@ LANTERN_SHARED float point_to_triangle(vec3 a, vec3 b, vec3 c, vec3 normal) {
   }
   return max(-sum / (2.0f * pi), 0.0f);
 }
+
+/// The share of a triangle's area that is above the horizon, of its corners' heights.
+LANTERN_SHARED float share_above(float ha, float hb, float hc) {
+  float low = min(ha, min(hb, hc));
+  float high = max(ha, max(hb, hc));
+  if (low >= 0.0f) return 1.0f;
+  if (high <= 0.0f) return 0.0f;
+  float middle = max(min(ha, hb), min(max(ha, hb), hc));
+  // The corner that is alone on its side cuts off a triangle like the whole.
+  if (middle <= 0.0f) return high * high / ((high - middle) * (high - low));
+  return 1.0f - low * low / ((low - middle) * (low - high));
+}

@@ -102,27 +102,39 @@ bool sees(vec3 point) {
   return local.z > hair && is_lit(point, way, local);
 }
 
-/// From the elements of the cluster one by one. Of one that is partly covered (w below 1) the corners
-/// say little: a disc at one of its open points stands for it.
+/// What each of the cluster's elements would bring if nothing were between. The hemicube stands at one
+/// point of the cluster and stands for all of it; where the point's horizon cuts the cluster, for
+/// what is above. Of an element that is partly covered (w below 1) the corners say little: a disc at
+/// one of its open points stands for it.
 vec3 from_elements(vec3 point, vec3 normal, int its_layer) {
+  if (dot(origin - point, normal) <= 0.0) return vec3(0.0);
   ivec2 size = textureSize(normals, 0);
   vec3 sum = vec3(0.0);
+  float flux = 0.0;
+  float flux_above = 0.0;
   for (int i = first; i < first + count; ++i) {
     ivec2 there = texel_of(i, size);
     vec4 leaving = texelFetch(unshot, there, 0);
+    vec4 source = texelFetch(normals, there, 0);
     float factor;
+    float above;
     if (leaving.w < 1.0) {
-      vec4 source = texelFetch(normals, there, 0);
-      factor = point_to_disc(point_of(there, its_layer) - point, normal, source.xyz, source.w);
+      vec3 way = point_of(there, its_layer) - point;
+      factor = point_to_disc(way, normal, source.xyz, source.w);
+      above = dot(way, normal) > 0.0 ? 1.0 : 0.0;
     } else {
       vec3 a = texelFetch(corners, there, 0).xyz - point;
       vec3 b = texelFetch(corners, there + ivec2(0, size.y), 0).xyz - point;
       vec3 c = texelFetch(corners, there + ivec2(0, 2 * size.y), 0).xyz - point;
       factor = point_to_triangle(a, b, c, normal);
+      above = share_above(dot(a, normal), dot(b, normal), dot(c, normal));
     }
     sum += leaving.xyz * factor;
+    float its_flux = source.w * (leaving.x + leaving.y + leaving.z);
+    flux += its_flux;
+    flux_above += its_flux * above;
   }
-  return sum;
+  return flux_above > 0.0 ? sum * (flux / flux_above) : vec3(0.0);
 }
 
 void main() {
@@ -134,7 +146,7 @@ void main() {
   vec3 to_centre = centre - point;
   if (dot(to_centre, to_centre) >= near_square) {
     vec3 source_normal = vec3(to_local[0].z, to_local[1].z, to_local[2].z);
-    float factor = point_to_disc(to_centre, normal.xyz, source_normal, area);
+    float factor = point_to_disc(origin - point, normal.xyz, source_normal, area);
     if (factor > 0.0 && sees(point)) irradiance = vec4(radiosity * factor, 0.0);
     return;
   }

@@ -3,6 +3,7 @@
 
 #include "lantern/core/hash.h"
 #include "lantern/core/parallel.h"
+#include "lantern/radiosity/direct_light.h"
 #include "lantern/radiosity/hemicube_matrix.h"
 #include "lantern/radiosity/hemicube_rows.h"
 #include "lantern/radiosity/solve.h"
@@ -207,8 +208,9 @@ std::vector<glm::dvec3> gathered(const Patched& room, const FormFactors& factors
 
 FormFactors matrix_by_hemicubes(const Patched& room, int resolution) {
   const StopFlag never{false};
-  return hemicube_form_factors(room.stage.world, *room.stage.tracer, room.patches,
-                               {.resolution = resolution}, never);
+  return hemicube_matrix(room.stage.world, *room.stage.tracer, room.patches,
+                         {.resolution = resolution}, never)
+      .factors;
 }
 
 TEST(HemicubeMatrix, FurnaceIsEmissionOverOneLessReflectance) {
@@ -239,11 +241,52 @@ TEST(HemicubeMatrix, ReciprocityErrorFallsWithTheResolution) {
   EXPECT_GT(fine, 0.0);
 }
 
+TEST(HemicubeMatrix, HalfShadowsAreSeenFromManyPoints) {
+  const Patched room(furnished_room(false), 400);
+  const Patches& patches = room.patches;
+  const StopFlag never{false};
+  const HemicubeOptions options{.resolution = 64};
+  const FormFactors many =
+      hemicube_matrix(room.stage.world, *room.stage.tracer, patches, options, never).factors;
+  std::vector<FormFactorRow> centres(patches.elements());
+  room.rows(options).from_centres(0, centres);
+  const FormFactors sampled(room.stage.world, *room.stage.tracer, patches, never);
+  const std::vector<DirectLight> direct =
+      direct_light(room.stage.world, *room.stage.tracer, patches);
+  double error_of_many = 0.0, error_of_centres = 0.0, guessed = 0.0, total = 0.0;
+  for (std::size_t e = 0; e < patches.elements(); ++e) {
+    double by_many = 0.0, by_rays = 0.0, from_centre = 0.0;
+    const auto emits = [&](std::size_t s) { return patches.emission[s] != glm::dvec3(0.0); };
+    for (std::size_t s = 0; s < patches.elements(); ++s) {
+      if (!emits(s)) continue;
+      by_many += static_cast<double>(many.row(e)[s]);
+      by_rays += static_cast<double>(sampled.row(e)[s]);
+    }
+    for (std::size_t k = 0; k < centres[e].elements.size(); ++k) {
+      if (emits(centres[e].elements[k])) from_centre += centres[e].factors[k];
+    }
+    const double area = patches.exposed_area(e);
+    const bool half = direct[e].seen > 0.0 && direct[e].seen < 0.9;
+    if (half) error_of_many += area * (by_many - by_rays) * (by_many - by_rays);
+    if (half) error_of_centres += area * (from_centre - by_rays) * (from_centre - by_rays);
+    guessed += area * direct[e].form_factor;
+    total += area * by_rays;
+    // All of the lamp is seen only by what it lights.
+    if (by_rays == 0.0) {
+      EXPECT_LT(direct[e].seen, 1.0) << e;
+    }
+  }
+  // Sixteen rays for each element in half shadow, one of ten, and centres of areas for the rest.
+  EXPECT_NEAR(guessed, total, 0.02 * total);
+  // What is left is the error of the rays, 1/32, and of the pixels.
+  EXPECT_LT(error_of_many, 0.25 * error_of_centres);
+}
+
 TEST(HemicubeMatrix, StoppedEarlyTheRestIsBlack) {
   const Patched room(test::box_room(Vec3(1.0f), 0.5f, 1.0f), 300);
   const StopFlag at_once{true};
   const FormFactors factors =
-      hemicube_form_factors(room.stage.world, *room.stage.tracer, room.patches, {}, at_once);
+      hemicube_matrix(room.stage.world, *room.stage.tracer, room.patches, {}, at_once).factors;
   EXPECT_EQ(row_sums(room.patches, factors).most, 0.0);
 }
 

@@ -79,6 +79,27 @@ TEST(SharedFormFactor, OfADiscIsThatOfAFarTriangleAndStaysBelowOne) {
   }
 }
 
+TEST(SharedFormFactor, WhatIsAboveTheHorizonIsAShareOfTheArea) {
+  const auto area_of = [](const Polygon& polygon) {
+    glm::dvec3 sum(0.0);
+    const auto corners = polygon.corners();
+    for (std::size_t i = 2; i < corners.size(); ++i) {
+      sum += glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+    }
+    return 0.5 * glm::length(sum);
+  };
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    const std::array corners = {glm::dvec3(random_point(i, 0)), glm::dvec3(random_point(i, 1)),
+                                glm::dvec3(random_point(i, 2))};
+    const Vec3 up(0.0f, 0.0f, 1.0f);
+    const double above = area_of(clip(Polygon(corners), glm::dvec3(0.0), glm::dvec3(up)));
+    const auto height = [&](std::size_t k) { return static_cast<float>(corners[k].z); };
+    EXPECT_NEAR(static_cast<double>(shared::share_above(height(0), height(1), height(2))),
+                above / area_of(Polygon(corners)), 1e-5)
+        << i;
+  }
+}
+
 TEST(SharedHemicube, PixelsSeeAlongTheRaysOfTheCpusHemicube) {
   for (const int n : {16, 64}) {
     const Hemicube cube(n);

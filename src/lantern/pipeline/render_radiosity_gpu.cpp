@@ -14,6 +14,17 @@ namespace {
 /// What Coombe et al. refine texels for; as for the matrix.
 constexpr int kRefinements = 2;
 
+/// Finer hemicubes tell more of each shot, and are worth more shots: the limits are those of the
+/// usual resolution and tighten with it, so that it sets the quality of all.
+ShotLimits limits_for(int resolution) {
+  ShotLimits limits;
+  const double finer = static_cast<double>(resolution) / HemicubeOptions{}.resolution;
+  limits.share /= finer;
+  limits.spread /= finer * finer;
+  limits.radius /= finer;
+  return limits;
+}
+
 void warn_of_holes(const Scene& scene, std::vector<std::string>& warnings) {
   for (const Material& material : scene.materials) {
     if (!has_holes(material)) continue;
@@ -31,7 +42,7 @@ Rendered render_radiosity_gpu(const RenderJob& job) {
     GpuRadiosity radiosity(job.world, job.tracer, stage.patches, stage.external,
                            {.hemicube = options.hemicube.resolution,
                             .cutoff = options.cutoff,
-                            .limits = {},
+                            .limits = limits_for(options.hemicube.resolution),
                             .seed = options.hemicube.seed});
     RadiositySolution solution = shoot(job, radiosity, statistics);
     statistics.hemicubes = radiosity.shots();

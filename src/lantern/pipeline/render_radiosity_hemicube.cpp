@@ -7,9 +7,7 @@
 #include "lantern/radiosity/solve.h"
 
 #include <memory>
-#include <numeric>
 #include <utility>
-#include <vector>
 
 namespace lantern {
 namespace {
@@ -28,16 +26,14 @@ Rendered render_radiosity_hemicube(const RenderJob& job) {
   const auto solve = [&](const RadiosityStage& stage, RadiosityStatistics& statistics) {
     require_matrix_memory(stage.patches.elements());
     const Stopwatch watch;
-    const FormFactors factors = hemicube_form_factors(
+    const auto [factors, hemicubes] = hemicube_matrix(
         job.world, job.tracer, stage.patches, hemicube, job.stop, [&](double share) {
           if (!job.report) return;
           job.report({share, watch.seconds() * (1.0 / share - 1.0), statistics.rounds});
         });
     GaussSeidelResult solution =
         solve_by_gauss_seidel(stage.patches, factors, stage.external, {}, job.stop);
-    const std::vector<std::size_t> points =
-        hemicube_points(stage.patches, job.options.radiosity.hemicube.resolution);
-    statistics.hemicubes = std::accumulate(points.begin(), points.end(), std::size_t{0});
+    statistics.hemicubes = hemicubes;
     statistics.row_sums = row_sums(stage.patches, factors);
     statistics.reciprocity_error = reciprocity_error(stage.patches, factors);
     statistics.sweeps = solution.sweeps;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/radiosity/hemicube_matrix.h"
 
+#include "lantern/radiosity/direct_light.h"
+
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <utility>
 #include <vector>
@@ -11,84 +12,65 @@
 namespace lantern {
 namespace {
 
-/// Standard error that pixels may leave in what comes straight from emitters, relative to the
+/// Standard error that may be left in what comes straight from emitters, relative to the
 /// irradiance.
-constexpr double kError = 0.015;
-/// Of an element that is covered in part, so that what is seen from one point of it is not all.
-constexpr std::size_t kPointsAtFoot = 4;
-constexpr std::size_t kMostPoints = 16;
+constexpr double kError = 0.03;
+/// Of an element's edges, one hemicube for each part.
+constexpr int kMostDivisions = 4;
+/// Of one that is covered in part, so that what is seen from one point of it is not all.
+constexpr int kDivisionsAtFoot = 2;
 
-/// Where light leaves by itself.
-struct Source {
-  glm::dvec3 centre, normal;
-  double area;
-  double radiosity;  // sum of the channels
+/// Into how many parts elements are cut, and what tells it.
+class Closeness {
+ public:
+  Closeness(const World& world, const Tracer& tracer, const Patches& patches, double pixels)
+      : patches_(patches), direct_(direct_light(world, tracer, patches)), pixels_(pixels) {}
+
+  /// `row` is what the element sees from its centre.
+  int divisions(std::size_t element, const FormFactorRow& row) const {
+    const double exposed = patches_.exposed[element];
+    const int least = exposed > 0.0 && exposed < 1.0 ? kDivisionsAtFoot : 1;
+    const DirectLight& light = direct_[element];
+    if (!(light.irradiance > 0.0)) return least;
+    // How many pixels fall on a shape of so many varies by the root of those on its border.
+    const double variance_of_pixels = std::pow(light.form_factor * pixels_, -1.5);
+    // As if each point saw all of the light or nothing.
+    const double variance_of_points = (1.0 - light.seen) / light.seen;
+    const double weight = light.irradiance / (light.irradiance + reflected(row));
+    const double error = weight * std::sqrt(variance_of_pixels + variance_of_points);
+    int divisions = least;
+    while (divisions < kMostDivisions && error > kError * divisions) divisions *= 2;
+    return divisions;
+  }
+
+ private:
+  /// What comes by way of one reflection.
+  double reflected(const FormFactorRow& row) const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < row.elements.size(); ++k) {
+      const std::uint32_t e = row.elements[k];
+      const glm::dvec3 rho = patches_.reflectance[patches_.patch[e]];
+      sum += row.factors[k] * (rho.r + rho.g + rho.b) / 3.0 * direct_[e].irradiance;
+    }
+    return sum;
+  }
+
+  const Patches& patches_;
+  std::vector<DirectLight> direct_;
+  double pixels_;  // of a hemicube
 };
-
-std::vector<Source> sources_of(const Patches& patches) {
-  std::vector<Source> sources;
-  for (std::size_t e = 0; e < patches.elements(); ++e) {
-    const glm::dvec3 emission = patches.emission[e];
-    if (emission == glm::dvec3(0.0)) continue;
-    sources.push_back({patches.centre[patches.patch[e]], patches.element_normal(e),
-                       patches.exposed_area(e), emission.r + emission.g + emission.b});
-  }
-  return sources;
-}
-
-/// As if the flux of all sources came to all elements alike: what the ambient term of progressive
-/// refinement is at its start, all channels reflected like their mean.
-double mean_irradiance(const Patches& patches, std::span<const Source> sources) {
-  double area = 0.0, reflected = 0.0, flux = 0.0;
-  for (std::size_t e = 0; e < patches.elements(); ++e) {
-    const glm::dvec3 rho = patches.reflectance[patches.patch[e]];
-    area += patches.exposed_area(e);
-    reflected += patches.exposed_area(e) * (rho.r + rho.g + rho.b) / 3.0;
-  }
-  for (const Source& source : sources) flux += source.area * source.radiosity;
-  return flux > 0.0 ? flux / (area - reflected) : 0.0;
-}
 
 }  // namespace
 
-std::vector<std::size_t> hemicube_points(const Patches& patches, int resolution) {
-  const std::vector<Source> sources = sources_of(patches);
-  const double mean = mean_irradiance(patches, sources);
-  const double pixels_of_all = 3.0 * resolution * resolution;
-  std::vector<std::size_t> points(patches.elements(), 1);
-  constexpr std::size_t kGrain = 64;
-  parallel_for(points.size(), kGrain, [&](std::size_t e) {
-    const double exposed = patches.exposed[e];
-    if (exposed > 0.0 && exposed < 1.0) points[e] = kPointsAtFoot;
-    const glm::dvec3 centre = patches.centre[patches.patch[e]], normal = patches.element_normal(e);
-    double factor = 0.0, direct = 0.0;
-    for (const Source& source : sources) {
-      const glm::dvec3 way = source.centre - centre;
-      const double square = glm::dot(way, way);
-      const double here = glm::dot(way, normal), there = -glm::dot(way, source.normal);
-      if (here <= 0.0 || there <= 0.0) continue;
-      const double share = source.area * here * there / (std::numbers::pi * square * square);
-      factor += share;
-      direct += share * source.radiosity;
-    }
-    if (!(factor > 0.0)) return;
-    // How many pixels fall on a shape of so many varies by the root of those on its border.
-    const double variance = std::pow(factor * pixels_of_all, -1.5);
-    const double weight = direct / std::max(direct, mean);
-    const double wanted = std::ceil(weight * weight * variance / (kError * kError));
-    points[e] = std::max(
-        points[e], static_cast<std::size_t>(std::min(wanted, static_cast<double>(kMostPoints))));
-  });
-  return points;
-}
-
-FormFactors hemicube_form_factors(const World& world, const Tracer& tracer, const Patches& patches,
-                                  const HemicubeOptions& options, const StopFlag& stop,
-                                  const std::function<void(double)>& report) {
+HemicubeMatrix hemicube_matrix(const World& world, const Tracer& tracer, const Patches& patches,
+                               const HemicubeOptions& options, const StopFlag& stop,
+                               const std::function<void(double)>& report) {
   const std::size_t n = patches.elements();
   std::vector<float> values(n * n, 0.0f);
   HemicubeRows hemicubes(world, tracer, patches, options);
-  const std::vector<std::size_t> points = hemicube_points(patches, options.resolution);
+  const Closeness closeness(world, tracer, patches,
+                            static_cast<double>(hemicubes.cubes().front().size()));
+  std::size_t drawn = 0;
   // Rows between two reports, and between two looks at the stop flag.
   constexpr std::size_t kRows = 64;
   std::vector<FormFactorRow> rows(kRows);
@@ -96,9 +78,10 @@ FormFactors hemicube_form_factors(const World& world, const Tracer& tracer, cons
     const std::size_t count = std::min(kRows, n - begin);
     hemicubes.from_centres(begin, std::span(rows).first(count));
     for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t e = begin + i;
-      if (points[e] == 1) continue;
-      hemicubes.from_points(static_cast<std::uint32_t>(e), {.count = points[e]}, rows[i]);
+      const int divisions = closeness.divisions(begin + i, rows[i]);
+      drawn += static_cast<std::size_t>(divisions * divisions);
+      if (divisions == 1) continue;
+      hemicubes.from_parts(static_cast<std::uint32_t>(begin + i), divisions, rows[i]);
     }
     for (std::size_t i = 0; i < count; ++i) {
       float* const row = values.data() + (begin + i) * n;
@@ -108,7 +91,7 @@ FormFactors hemicube_form_factors(const World& world, const Tracer& tracer, cons
     }
     if (report) report(static_cast<double>(begin + count) / static_cast<double>(n));
   }
-  return FormFactors(std::move(values));
+  return {FormFactors(std::move(values)), drawn};
 }
 
 }  // namespace lantern

@@ -11,17 +11,18 @@
 
 #include <cstddef>
 #include <functional>
-#include <vector>
 
 namespace lantern {
 
-/// From how many points of each element hemicubes look: more than the centre alone where a solid
-/// covers a part of it, and where emitters, were nothing between, would fill few pixels.
-std::vector<std::size_t> hemicube_points(const Patches& patches, int resolution);
+struct HemicubeMatrix {
+  FormFactors factors;
+  std::size_t hemicubes = 0;  // more than one for an element that a solid covers in part, where
+                              // emitters fill few pixels, and in half shadow
+};
 
 /// Rows not reached before `stop` is set stay 0. `report` is called with the share that is done.
-FormFactors hemicube_form_factors(const World& world, const Tracer& tracer, const Patches& patches,
-                                  const HemicubeOptions& options, const StopFlag& stop,
-                                  const std::function<void(double)>& report = {});
+HemicubeMatrix hemicube_matrix(const World& world, const Tracer& tracer, const Patches& patches,
+                               const HemicubeOptions& options, const StopFlag& stop,
+                               const std::function<void(double)>& report = {});
 
 }  // namespace lantern

@@ -26,7 +26,7 @@ constexpr int kCoarsest = 16;
 /// Points tried on an element before it is taken for wholly covered.
 constexpr std::uint64_t kTries = 64;
 
-/// Centres are not part of any element's sequence of points.
+/// Centres, of elements and below it of their parts, are not part of any sequence of points.
 constexpr std::uint64_t kCentre = ~std::uint64_t{0};
 
 /// Barycentric weights of the second and third corner. [Roberts 2018, The Unreasonable
@@ -81,10 +81,16 @@ HemicubeView HemicubeRows::view_from_point(std::uint32_t element, std::uint64_t 
   const std::uint64_t key = hash(seed_, element);
   const glm::dvec2 uv =
       triangle_point(number, {to_unit_float(hash(key, 0)), to_unit_float(hash(key, 1))});
+  return view_at(element, uv, number);
+}
+
+/// At barycentric weights of the second and third corner.
+HemicubeView HemicubeRows::view_at(std::uint32_t element, const glm::dvec2& weights,
+                                   std::uint64_t turn) const {
   const std::uint32_t patch = patches_.patch[element];
   const glm::dvec3 a = patches_.mesh.corner(patch, 0), b = patches_.mesh.corner(patch, 1),
                    c = patches_.mesh.corner(patch, 2);
-  return view(element, a + uv.x * (b - a) + uv.y * (c - a), number);
+  return view(element, a + weights.x * (b - a) + weights.y * (c - a), turn);
 }
 
 /// The element that a ray met, or one of the items that are none.
@@ -185,6 +191,27 @@ void HemicubeRows::from_centres(std::size_t first, std::span<FormFactorRow> rows
       take(sums_[i], rows[begin + i]);
     }
   }
+}
+
+void HemicubeRows::from_parts(std::uint32_t element, int divisions, FormFactorRow& row) {
+  std::vector<HemicubeView> views;
+  // Rows of triangles that stand on their sides, and between them those that stand on their tips.
+  for (int y = 0; y < divisions; ++y) {
+    for (int x = 0; x < 2 * (divisions - y) - 1; ++x) {
+      const double third = x % 2 == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
+      const glm::dvec2 centre = (glm::dvec2(x / 2, y) + third) / static_cast<double>(divisions);
+      views.push_back(view_at(element, centre, kCentre - 1 - views.size()));
+    }
+  }
+  const Hemicube& cube = cubes_.front();
+  Sum& sum = sums_.front();
+  for (std::size_t begin = 0; begin < views.size(); begin += kBatch) {
+    const auto batch = std::span(views).subspan(begin, std::min(kBatch, views.size() - begin));
+    draw(cube, batch);
+    for (std::size_t i = 0; i < batch.size(); ++i) add(cube, i, sum);
+  }
+  if (sum.hemicubes == 0) add_uncovered_point(cube, element, 0, sum);
+  take(sum, row);
 }
 
 void HemicubeRows::from_points(std::uint32_t element, const Points& points, FormFactorRow& row) {

@@ -42,6 +42,10 @@ class HemicubeRows {
   /// From the centres of the elements [first, first + rows.size()), by the finest hemicube.
   void from_centres(std::size_t first, std::span<FormFactorRow> rows);
 
+  /// The mean of the rows from the centres of `divisions` squared equal parts of an element: as a
+  /// rule of integration it is as exact as the centre is, to first order, and finer.
+  void from_parts(std::uint32_t element, int divisions, FormFactorRow& row);
+
   struct Points {
     std::uint64_t first = 0;  // numbers of a sequence that covers the element evenly
     std::size_t count = 1;
@@ -62,6 +66,7 @@ class HemicubeRows {
   HemicubeView view(std::uint32_t element, const glm::dvec3& position, std::uint64_t turn) const;
   HemicubeView view_from_centre(std::uint32_t element) const;
   HemicubeView view_from_point(std::uint32_t element, std::uint64_t number) const;
+  HemicubeView view_at(std::uint32_t element, const glm::dvec2& weights, std::uint64_t turn) const;
   std::uint32_t item(const Hit& hit, const Vec3& direction) const;
   void draw(const Hemicube& cube, std::span<const HemicubeView> views);
   void paint(const Hemicube& cube, std::span<const HemicubeView> views);
