@@ -5,6 +5,7 @@
 // 2014, Sub-pixel Shadow Mapping]
 #include "shaders/map_tiles.glsl"
 #include "shaders/shadow_maps.glsl"
+#include "shaders/triangles.glsl"
 
 uniform highp usampler2D u_points;
 uniform highp usampler2D u_reflectances;
@@ -13,7 +14,6 @@ uniform highp usampler2D u_told;    // see shaders/map_tile_masks.frag.glsl
 uniform sampler2D u_mask;           // lights that are asked for
 uniform highp usampler2D u_map_numbers;
 uniform highp sampler2D u_triangles;
-#include "shaders/triangles.glsl"
 
 layout(location = 0) out vec4 o_mask;
 
@@ -36,7 +36,7 @@ const int kOpen = 2;
 
 /// What the map tells by itself.
 int look_up(int light, Receiver p) {
-  LightMap map = u_maps[light];
+  LightMap map = map_of(light);
   vec3 way = way_to(map, p.position);
   float cosine = dot(p.geometric, way);
   if (cosine <= 0.0) return kShadowed;
@@ -74,7 +74,7 @@ uint seen_in(ivec2 corner, ivec2 texel, bool is_nearest, Receiver p) {
 }
 
 Question question_for(int light, Receiver p) {
-  LightMap map = u_maps[light];
+  LightMap map = map_of(light);
   Question asked;
   asked.way = way_to(map, p.position);
   MapPoint at = find_in_map(light, map, p.position, asked.way);
@@ -134,12 +134,12 @@ uint next_of(inout Question open) {
 bool is_in_way(inout Question open, Receiver p) {
   uint seen = next_of(open), number = seen & kNumber;
   vec3 way = open.way;
-  vec4 a = corner_of(number - 1u, 0), b = corner_of(number - 1u, 1), c = corner_of(number - 1u, 2);
+  vec4 a = corner_of(u_triangles, number - 1u, 0), b = corner_of(u_triangles, number - 1u, 1), c = corner_of(u_triangles, number - 1u, 2);
   vec3 ab = b.xyz - a.xyz, ac = c.xyz - a.xyz, from_a = p.position - a.xyz;
   vec3 across = cross(way, ac), turned = cross(from_a, ab);
-  float volume = dot(ab, across);
-  float v_of_b = dot(from_a, across) / volume, v_of_c = dot(way, turned) / volume;
-  float t = dot(ac, turned) / volume;
+  float volume = dot(ab, across), part = 1.0 / volume;
+  float v_of_b = dot(from_a, across) * part, v_of_c = dot(way, turned) * part;
+  float t = dot(ac, turned) * part;
   float v_of_a = 1.0 - v_of_b - v_of_c;
   // Rays along a shared edge must not slip through: rounding.
   const float kSeam = 1e-5;
@@ -166,9 +166,6 @@ bool is_in_way(inout Question open, Receiver p) {
   open.last = number;
   return false;
 }
-
-/// The number of a bit.
-int number_of(uint bit) { return int(floatBitsToUint(float(bit)) >> 23) - 127; }
 
 uint lowest(uint bits) { return bits & (~bits + 1u); }
 

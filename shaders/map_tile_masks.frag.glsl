@@ -14,7 +14,8 @@ const int kShadowed = 0;
 const int kSeen = 1;
 const int kOpen = 2;
 
-const float kFurthest = 4.0;  // texels around a point
+// So many texels around a point blocks are asked one by one, and so many cells.
+const float kFine = 2.0, kFurthest = 4.0;
 
 /// How far the nearest that some blocks see is that is not of the tile's patch, and the furthest.
 struct Sees {
@@ -27,7 +28,7 @@ void add(uvec2 block, uint own, inout Sees sees) {
 }
 
 int told(int light, vec4 sphere, vec3 normal, float spread, float thickness, uint own) {
-  LightMap map = u_maps[light];
+  LightMap map = map_of(light);
   vec3 way = way_to(map, sphere.xyz);
   float cosine = dot(normal, way);
 #if KIND == 2
@@ -59,13 +60,14 @@ int told(int light, vec4 sphere, vec3 normal, float spread, float thickness, uin
   if (is_at_border(low, high)) return kOpen;
   ivec2 corner = corner_of_map(light);
   Sees sees = Sees(uintBitsToFloat(kInfinitelyFar << 16), 0.0);
-  if (texels <= 1.0) {
-    // Two blocks are four texels wide.
-    low += corner, high += corner;
-    add(texelFetch(u_map_blocks, low, 0).xy, own, sees);
-    add(texelFetch(u_map_blocks, ivec2(high.x, low.y), 0).xy, own, sees);
-    add(texelFetch(u_map_blocks, ivec2(low.x, high.y), 0).xy, own, sees);
-    add(texelFetch(u_map_blocks, high, 0).xy, own, sees);
+  if (texels <= kFine) {
+    // Blocks are two texels wide.
+    for (int y = low.y; y <= high.y + 1; y += 2) {
+      for (int x = low.x; x <= high.x + 1; x += 2) {
+        ivec2 block = corner + min(ivec2(x, y), high);
+        add(texelFetch(u_map_blocks, block, 0).xy, own, sees);
+      }
+    }
   } else {
     low = (corner + low) / kCell, high = (corner + high) / kCell;
     for (int y = low.y; y <= high.y; ++y) {

@@ -3,13 +3,21 @@
 #include "shaders/octahedral.glsl"
 #include "shaders/shadow_map.glsl"
 
-struct LightMap {
-  vec4 x, y, z;  // axes of its frame, its position; of KIND 2 what makes (x, y) in [-1, 1] and depth
-};
-layout(std140) uniform LightMaps { LightMap u_maps[32]; };
+// A row for each light. Mesa looks textures up faster than uniform blocks.
+uniform highp sampler2D u_map_frames;
 uniform highp usampler2D u_map_blocks;  // see shaders/shadow_map.glsl
 
 const int kMapsAcross = 4;
+
+struct LightMap {
+  vec4 x, y, z;  // axes of its frame, its position; of KIND 2 what makes (x, y) in [-1, 1] and depth
+};
+
+LightMap map_of(int light) {
+  return LightMap(texelFetch(u_map_frames, ivec2(0, light), 0),
+                  texelFetch(u_map_frames, ivec2(1, light), 0),
+                  texelFetch(u_map_frames, ivec2(2, light), 0));
+}
 
 /// As long as the light is far; of a directional light a unit vector.
 vec3 way_to(LightMap map, vec3 position) {
@@ -63,7 +71,7 @@ ivec2 corner_of_map(int light) {
 #if KIND == 0
   light >>= 1;
 #endif
-  return ivec2(light % kMapsAcross, light / kMapsAcross) * u_map_size;
+  return ivec2(light & (kMapsAcross - 1), light / kMapsAcross) * u_map_size;
 }
 
 /// The first of the four texels around; at the map's border not all of them are in it.

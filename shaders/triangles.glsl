@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: MIT
-/// A corner of a triangle in the texture of triangle_texture.h, and the number of the triangle
-/// beyond the edge from it to the next and 1, or 0.
-vec4 corner_of(uint triangle, int corner) {
-  int at = 3 * int(triangle) + corner, width = textureSize(u_triangles, 0).x;
-  return texelFetch(u_triangles, ivec2(at % width, at / width), 0);
+// Texels row by row, as in the textures of triangle_texture.h, whose widths are powers of two: Mesa
+// takes long to divide integers.
+
+/// The number of a bit.
+int number_of(uint bit) { return int(floatBitsToUint(float(bit)) >> 23) - 127; }
+
+ivec2 texel_number(int i, int width) { return ivec2(i & (width - 1), i >> number_of(uint(width))); }
+
+/// A corner of a triangle and the number of the triangle beyond the edge from it to the next and 1,
+/// or 0.
+vec4 corner_of(highp sampler2D corners, uint triangle, int corner) {
+  return texelFetch(corners, texel_number(3 * int(triangle) + corner, textureSize(corners, 0).x), 0);
 }

@@ -17,7 +17,6 @@ struct MapFrame {
   Vec4 x{0.0f}, y{0.0f}, z{0.0f};
   bool operator==(const MapFrame&) const = default;
 };
-static_assert(sizeof(MapFrame) == 48, "std140");
 
 /// Of each light of the group. `bounds` of the scene; maps have `size` texels a side.
 std::vector<MapFrame> map_frames(const LightGroup& group, const Bounds& bounds, int size);

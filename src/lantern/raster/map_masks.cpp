@@ -13,10 +13,8 @@ constexpr int kTile = 4;  // as in shaders/map_tiles.glsl
 int tiles(int pixels) { return (pixels + kTile - 1) / kTile; }
 
 gl::Program program_of(const gl::ShaderFiles& files, const char* fragment, LightFormula formula) {
-  gl::Program program(files, "shaders/full_screen.vert.glsl", fragment,
-                      {{"KIND", std::to_string(static_cast<int>(formula))}});
-  ShadowMaps::prepare(program);
-  return program;
+  return gl::Program(files, "shaders/full_screen.vert.glsl", fragment,
+                     {{"KIND", std::to_string(static_cast<int>(formula))}});
 }
 
 }  // namespace
@@ -65,8 +63,8 @@ const gl::Texture& MapMasks::draw(const LightGroup& group, const GBuffer& g_buff
   programs.of_tiles.set("u_spheres", 0, spheres_);
   programs.of_tiles.set("u_normals", 1, normals_);
   programs.of_tiles.set("u_count", static_cast<int>(group.records.size()));
-  maps_.set_blocks(programs.of_tiles, 2);
-  programs.of_tiles.set("u_map_cells", 3, maps_.cells());
+  maps_.set_in(programs.of_tiles, 2);
+  programs.of_tiles.set("u_map_cells", 4, maps_.cells());
   told_framebuffer_.bind();
   gl::draw_full_screen(no_vertices_);
 
@@ -75,9 +73,9 @@ const gl::Texture& MapMasks::draw(const LightGroup& group, const GBuffer& g_buff
   programs.of_pixels.set("u_owners", 2, owner_);
   programs.of_pixels.set("u_told", 3, told_);
   programs.of_pixels.set("u_mask", 4, asked);
-  maps_.set_blocks(programs.of_pixels, 5);
-  programs.of_pixels.set("u_map_numbers", 6, maps_.numbers());
-  programs.of_pixels.set("u_triangles", 7, maps_.triangles().corners);
+  maps_.set_in(programs.of_pixels, 5);
+  programs.of_pixels.set("u_map_numbers", 7, maps_.numbers());
+  programs.of_pixels.set("u_triangles", 8, maps_.triangles().corners);
   mask_framebuffer_.bind();
   gl::draw_full_screen(no_vertices_);
   times.end();

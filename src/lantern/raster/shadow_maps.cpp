@@ -18,7 +18,6 @@
 namespace lantern {
 namespace {
 
-constexpr GLuint kFramesBinding = 1;
 constexpr std::size_t kTexelBytes = 3 * sizeof(std::uint32_t);
 constexpr int kMapsAcross = 4;  // as in shaders/shadow_maps.glsl
 constexpr int kCell = 4;        // as in shaders/shadow_map.glsl
@@ -41,6 +40,19 @@ gl::Program caster_program(const gl::ShaderFiles& files, bool holes) {
 
 int rows_of(const LightGroup& group) {
   return map_place(group.formula, group.records.size() - 1).tile / kMapsAcross + 1;
+}
+
+/// A row for each.
+gl::Texture frame_texture(std::span<const MapFrame> frames) {
+  std::vector<float> channels;
+  for (const MapFrame& frame : frames) {
+    for (const Vec4& row : {frame.x, frame.y, frame.z}) {
+      channels.insert(channels.end(), {row.x, row.y, row.z, row.w});
+    }
+  }
+  gl::Texture texture(gl::Format::kRgba32f, 3, static_cast<int>(frames.size()));
+  texture.write<float>(channels);
+  return texture;
 }
 
 }  // namespace
@@ -100,7 +112,6 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
       cells_(files, "shaders/full_screen.vert.glsl", "shaders/shadow_map_cells.frag.glsl"),
       casters_(casters_of(scene, world, options.casters)),
       indices_(std::span<const std::uint32_t>()),
-      frames_(std::span<const MapFrame>()),
       array_({}, &indices_) {
   attributes_.reserve(5);
   const auto add = [&](gl::Buffer buffer, GLuint location, int channels, bool integer = false) {
@@ -128,10 +139,6 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
 /// All of the scene is in a picture from infinity, near things too.
 int ShadowMaps::size_of(LightFormula formula) const {
   return formula == LightFormula::kDirectional ? 2 * options_.size : options_.size;
-}
-
-void ShadowMaps::prepare(const gl::Program& program) {
-  program.set_block("LightMaps", kFramesBinding);
 }
 
 bool ShadowMaps::are_of(const Maps& maps, const LightGroup& group) {
@@ -171,8 +178,10 @@ void ShadowMaps::draw(const LightGroup& group, StageTimes& times) {
   const int size = size_of(group.formula);
   const int width = kMapsAcross * size, height = rows_of(group) * size;
   make_room(kTexelBytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  kept_.push_back({group.formula, group.records, group.points, map_frames(group, bounds_, size),
-                   gl::Texture(gl::Format::kRg32ui, width, height),
+  std::vector<MapFrame> frames = map_frames(group, bounds_, size);
+  gl::Texture frame_texels = frame_texture(frames);
+  kept_.push_back({group.formula, group.records, group.points, std::move(frames),
+                   std::move(frame_texels), gl::Texture(gl::Format::kRg32ui, width, height),
                    gl::Texture(gl::Format::kRg32ui, width / kCell, height / kCell),
                    gl::Texture(gl::Format::kR32ui, width, height)});
   times.begin(Stage::kMaps);
@@ -262,14 +271,11 @@ void ShadowMaps::draw_light(const Maps& maps, std::size_t light) {
   }
 }
 
-void ShadowMaps::set_blocks(const gl::Program& program, int unit) {
+void ShadowMaps::set_in(const gl::Program& program, int unit) const {
   const Maps& maps = kept_.back();
-  std::array<MapFrame, kLightsInGroup> frames;
-  std::copy(maps.frames.begin(), maps.frames.end(), frames.begin());
-  frames_.write(std::span<const MapFrame>(frames));
-  frames_.bind_as_uniforms(kFramesBinding);
   program.set("u_map_size", size_of(maps.formula));
-  program.set("u_map_blocks", unit, maps.blocks);
+  program.set("u_map_frames", unit, maps.frame_texels);
+  program.set("u_map_blocks", unit + 1, maps.blocks);
 }
 
 }  // namespace lantern

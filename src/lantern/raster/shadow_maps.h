@@ -46,15 +46,13 @@ class ShadowMaps {
   void keep(std::span<const std::vector<LightGroup>> groups);
   /// Draws the group's maps unless they are there still.
   void draw(const LightGroup& group, StageTimes& times);
-  /// What shaders/shadow_maps.glsl takes of the group that was drawn last, on a texture unit.
-  void set_blocks(const gl::Program& program, int unit);
+  /// What shaders/shadow_maps.glsl takes of the group that was drawn last, on two texture units
+  /// from `unit` on.
+  void set_in(const gl::Program& program, int unit) const;
   /// The same of coarse cells, and the numbers of the triangles that texels see.
   const gl::Texture& cells() const { return kept_.back().cells; }
   const gl::Texture& numbers() const { return kept_.back().numbers; }
   const TriangleTextures& triangles() const { return triangles_; }
-
-  /// What a program with shaders/shadow_maps.glsl needs once.
-  static void prepare(const gl::Program& program);
 
   /// Lights whose maps were drawn so far.
   std::size_t drawn() const { return drawn_; }
@@ -65,7 +63,7 @@ class ShadowMaps {
     std::vector<LightRecord> lights;
     std::vector<LightPoint> points;
     std::vector<MapFrame> frames;
-    gl::Texture blocks, cells, numbers;
+    gl::Texture frame_texels, blocks, cells, numbers;
     std::size_t bytes() const;
   };
 
@@ -102,7 +100,7 @@ class ShadowMaps {
   gl::Program solid_, with_holes_, blocks_, cells_;
   Casters casters_;
   std::vector<gl::Buffer> attributes_;
-  gl::Buffer indices_, frames_;
+  gl::Buffer indices_;
   gl::VertexArray array_;
   std::map<std::pair<int, int>, Unfinished> unfinished_;  // by size
   gl::VertexArray no_vertices_;
