@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
     for (const LightGroup& group : groups) {
       shadows.draw(group.points, view, mask_framebuffer, times);
       with_block(group);
-      shading.add(group, g_buffer, mask);
+      shading.add(group, g_buffer, mask, view);
     }
     shading.copy_to(irradiance);
   });

@@ -1,35 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Each pixel of a tile of TILE x TILE has its share of the lights. Fragments make as many pixels of
-// a row as a texel has channels, and textures hold them so: red, green and blue of four neighbours.
-#include "shaders/octahedral.glsl"
+// Each pixel of a tile of TILE x TILE has its share of the lights; the shares' pictures stand side
+// by side. Fragments make as many pixels of a row as a texel has channels, and textures hold them
+// so: red, green and blue of four neighbours. The quads of one tile are neighbours in a row there.
 
 const int kColumns = TILE < 4 ? TILE : 4;
 
-uniform highp usampler2D u_tiles;  // see shaders/interleaved_tiles.frag.glsl
-uniform float u_plane_distance;
-
-/// Above this cosine a surface counts as flat.
-const float kFlat = 0.999;
-/// In place of the normal of a tile that is not: no unit vector.
-const uint kRough = 0xffffffffu;
-
-/// Whether a point is in the plane of another, up to a distance, and has about its normal.
-bool is_in_plane(uvec4 plane, uvec4 point) {
-  if (point == uvec4(0u) || plane == uvec4(0u)) return point == plane;  // the sky
-  vec3 normal = unpack_unit(plane.w);
-  float off = dot(normal, uintBitsToFloat(point.xyz) - uintBitsToFloat(plane.xyz));
-  return abs(off) < u_plane_distance && dot(normal, unpack_unit(point.w)) > kFlat;
+ivec2 quad_of(ivec2 pixel) {
+  return ivec2(pixel.x / kColumns * TILE + pixel.y % TILE, pixel.y / TILE);
+}
+ivec2 first_pixel_of(ivec2 quad) {
+  return ivec2(quad.x / TILE * kColumns, quad.y * TILE + quad.x % TILE);
 }
 
-/// Whether both tiles are parts of one plane.
-bool are_joined(ivec2 tile, ivec2 other) {
-  ivec2 size = textureSize(u_tiles, 0);
-  if (any(lessThan(other, ivec2(0))) || any(greaterThanEqual(other, size))) return false;
-  uvec4 a = texelFetch(u_tiles, tile, 0), b = texelFetch(u_tiles, other, 0);
-  return a.w != kRough && b.w != kRough && is_in_plane(a, b);
-}
+/// What is known of a tile, as bits: which neighbours are parts of the same plane, and whether the
+/// tile is too rough for what its shares give to stand for its pixels.
+const uint kBefore = 1u;
+const uint kAfter = 2u;
+const uint kAbove = 4u;
+const uint kBelow = 8u;
+const uint kRough = 16u;
 
-/// The one that has this coordinate's share, at it or, if that is off this tile and not joined to
+/// The pixel that has this coordinate's share: at it or, if that is off this tile and not joined to
 /// it, in this tile.
 int within(int at, int tile, bool before, bool after) {
   if (at < tile * TILE) return before ? at : at + TILE;

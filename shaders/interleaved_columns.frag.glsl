@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Irradiance where the surface is flat: rows brought together as the shares of each were.
+// Irradiance where the surface is smooth: rows brought together as the shares of each were.
 #include "shaders/interleaved.glsl"
 
+uniform highp usampler2D u_joins;
 uniform sampler2D u_red, u_green, u_blue;
 
 layout(location = 0) out vec4 o_red;
@@ -9,12 +10,13 @@ layout(location = 1) out vec4 o_green;
 layout(location = 2) out vec4 o_blue;
 
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy), tile = ivec2(kColumns, 1) * at / TILE;
-  if (texelFetch(u_tiles, tile, 0).w == kRough) discard;
-  bool before = are_joined(tile, tile - ivec2(0, 1)), after = are_joined(tile, tile + ivec2(0, 1));
+  ivec2 at = first_pixel_of(ivec2(gl_FragCoord.xy)), tile = at / TILE;
+  uint joins = texelFetch(u_joins, tile, 0).r;
+  if ((joins & kRough) != 0u) discard;
+  bool above = (joins & kAbove) != 0u, below = (joins & kBelow) != 0u;
   o_red = o_green = o_blue = vec4(0.0);
   for (int y = 1 - TILE; y < TILE; ++y) {
-    ivec2 other = ivec2(at.x, within(at.y + y, tile.y, before, after));
+    ivec2 other = quad_of(ivec2(at.x, within(at.y + y, tile.y, above, below)));
     o_red += nearness(y) * texelFetch(u_red, other, 0);
     o_green += nearness(y) * texelFetch(u_green, other, 0);
     o_blue += nearness(y) * texelFetch(u_blue, other, 0);

@@ -3,15 +3,17 @@
 // shares of that row of a tile give.
 #include "shaders/interleaved.glsl"
 
-uniform highp usampler2D u_shares;  // side by side
+uniform highp usampler2D u_joins;
+uniform highp usampler2D u_shares;
 
 layout(location = 0) out vec4 o_red;
 layout(location = 1) out vec4 o_green;
 layout(location = 2) out vec4 o_blue;
 
 void main() {
-  ivec2 at = ivec2(kColumns, 1) * ivec2(gl_FragCoord.xy), tile = at / TILE;
-  bool before = are_joined(tile, tile - ivec2(1, 0)), after = are_joined(tile, tile + ivec2(1, 0));
+  ivec2 at = first_pixel_of(ivec2(gl_FragCoord.xy)), tile = at / TILE;
+  uint joins = texelFetch(u_joins, tile, 0).r;
+  bool before = (joins & kBefore) != 0u, after = (joins & kAfter) != 0u;
   ivec2 share_size = textureSize(u_shares, 0) / TILE;
   o_red = o_green = o_blue = vec4(0.0);
   for (int x = 1 - TILE; x < kColumns + TILE - 1; ++x) {

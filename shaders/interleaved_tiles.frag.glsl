@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Of each tile a point and its normal, as in the G-buffer, if all of it is in that plane.
-#include "shaders/interleaved.glsl"
+#include "shaders/interleaved_planes.glsl"
 
 uniform highp usampler2D u_points;
 
@@ -15,5 +15,5 @@ void main() {
       flat_tile = is_in_plane(plane, texelFetch(u_points, first + ivec2(x, y), 0)) && flat_tile;
     }
   }
-  o_tile = uvec4(plane.xyz, flat_tile ? plane.w : kRough);
+  o_tile = uvec4(plane.xyz, flat_tile ? plane.w : kNotFlat);
 }

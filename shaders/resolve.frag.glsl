@@ -7,7 +7,7 @@ uniform sampler2D u_emissions;
 uniform sampler2D u_red, u_green, u_blue;
 
 vec3 irradiance_of(ivec2 at) {
-  ivec2 quad = ivec2(at.x / kColumns, at.y);
+  ivec2 quad = quad_of(at);
   int i = at.x % kColumns;
   return vec3(texelFetch(u_red, quad, 0)[i], texelFetch(u_green, quad, 0)[i],
               texelFetch(u_blue, quad, 0)[i]);

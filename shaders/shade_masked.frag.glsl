@@ -10,6 +10,8 @@ uniform highp usampler2D u_reflectances;
 uniform sampler2D u_mask;
 uniform highp usampler2D u_sum_0, u_sum_1, u_sum_2, u_sum_3;
 uniform int u_count;
+uniform ivec2 u_first;  // pixel of the G-buffer that the mask begins with
+uniform int u_step;     // and how far apart its pixels are there
 
 // The irradiance's bits and, with LIT, those of the lights that would give something, were nothing
 // between.
@@ -22,11 +24,12 @@ ivec2 pixel_of(int strip) {
   ivec2 at = ivec2(gl_FragCoord.xy);
   // The last strip may be shorter; what is beyond is not looked at.
   int rows = textureSize(u_sum_0, 0).y;
-  return ivec2(at.x, min(at.y + strip * rows, textureSize(u_points, 0).y - 1));
+  return ivec2(at.x, min(at.y + strip * rows, textureSize(u_mask, 0).y - 1));
 }
 
 Point point_of(int strip) {
   ivec2 at = pixel_of(strip);
+  at = min(u_first + u_step * at, textureSize(u_points, 0) - 1);
   uvec4 bits = texelFetch(u_points, at, 0);
   Point p;
   p.position = uintBitsToFloat(bits.xyz);

@@ -218,10 +218,10 @@ TEST(Pictures, InterleavedComesClose) {
     int tile;
     double mean;
   };
-  const std::vector<Case> cases = {{test::own_scene("cornell_box.scene"), 2, 0.006},
-                                   {test::own_scene("cornell_box.scene"), 4, 0.014},
-                                   {test::own_scene("cornell_box.scene"), 8, 0.025},
-                                   {test::room_of_balls(12, 12), 4, 0.027}};
+  const std::vector<Case> cases = {{test::own_scene("cornell_box.scene"), 2, 0.004},
+                                   {test::own_scene("cornell_box.scene"), 4, 0.008},
+                                   {test::own_scene("cornell_box.scene"), 8, 0.014},
+                                   {test::room_of_balls(12, 12), 4, 0.02}};
   for (const Case& tested : cases) {
     RenderOptions options = small(140);  // about 256 lights
     options.width = 250;                 // no multiple of any tile

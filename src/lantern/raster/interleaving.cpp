@@ -73,16 +73,20 @@ Interleaving::Interleaving(const gl::ShaderFiles& files, int width, int height, 
       plane_distance_(1e-2f * radius),
       split_(program_of(files, "shaders/interleaved_split.frag.glsl", tile)),
       find_tiles_(program_of(files, "shaders/interleaved_tiles.frag.glsl", tile)),
+      join_tiles_(program_of(files, "shaders/interleaved_joins.frag.glsl", tile)),
       add_rows_(program_of(files, "shaders/interleaved_rows.frag.glsl", tile)),
       add_columns_(program_of(files, "shaders/interleaved_columns.frag.glsl", tile)),
       tiles_(gl::Format::kRgba32ui, in_tiles(width, tile), in_tiles(height, tile)),
+      joins_(gl::Format::kR32ui, tiles_.width(), tiles_.height()),
       shares_(gl::Format::kRgba32ui, tile * tiles_.width(), tile * tiles_.height()),
       lights_(gl::Format::kRgba32f, kLightTexels + 1, tile * tile),
-      stencil_(gl::Format::kDepth32fStencil8, in_tiles(width, columns_of(tile)), height),
+      stencil_(gl::Format::kDepth32fStencil8, in_tiles(width, columns_of(tile)) * tile,
+               tiles_.height()),
       tile_framebuffer_({&tiles_}),
-      rows_(stencil_.width(), height, nullptr),
-      irradiance_{Quads(stencil_.width(), height, &stencil_),
-                  Quads(stencil_.width(), height, &stencil_)} {
+      join_framebuffer_({&joins_}),
+      rows_(stencil_.width(), stencil_.height(), nullptr),
+      irradiance_{Quads(stencil_.width(), stencil_.height(), &stencil_),
+                  Quads(stencil_.width(), stencil_.height(), &stencil_)} {
   for (int formula = 0; formula < kLightFormulas; ++formula) {
     std::vector<gl::Definition> with = definitions(tile);
     with.push_back({"KIND", std::to_string(formula)});
@@ -91,9 +95,10 @@ Interleaving::Interleaving(const gl::ShaderFiles& files, int width, int height, 
   }
 }
 
-void Interleaving::split(const GBuffer& whole, const View& of_share, const GBuffer& share) const {
+void Interleaving::split(const GBuffer& whole, const View& of_share, const GBuffer& share,
+                         bool all) const {
   share.framebuffer.bind();
-  apply({.depth = DepthUse::kReplace}, of_share);
+  apply({.depth = DepthUse::kReplace, .colour = all}, of_share);
   glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(of_share), 0);
   split_.set("u_points", 0, whole.points);
   split_.set("u_reflectances", 1, whole.reflectances);
@@ -173,8 +178,13 @@ void Interleaving::filter(const GBuffer& whole, const View& view) {
   tile_framebuffer_.bind();
   gl::draw_full_screen(no_vertices_);
 
-  add_rows_.set("u_plane_distance", plane_distance_);
-  add_rows_.set("u_tiles", 0, tiles_);
+  join_tiles_.set("u_plane_distance", plane_distance_);
+  join_tiles_.set("u_tiles", 0, tiles_);
+  join_tiles_.set("u_shares", 1, shares_);
+  join_framebuffer_.bind();
+  gl::draw_full_screen(no_vertices_);
+
+  add_rows_.set("u_joins", 0, joins_);
   add_rows_.set("u_shares", 1, shares_);
   rows_.framebuffer.bind();
   gl::draw_full_screen(no_vertices_);
@@ -198,8 +208,7 @@ void Interleaving::filter(const GBuffer& whole, const View& view) {
   irradiance_[passes.size() % 2].framebuffer.bind();
   apply({.stencil = StencilUse::kMark, .reference = 1}, view);
   glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(view), 0);
-  add_columns_.set("u_plane_distance", plane_distance_);
-  add_columns_.set("u_tiles", 0, tiles_);
+  add_columns_.set("u_joins", 0, joins_);
   rows_.set_in(add_columns_, 1);
   gl::draw_full_screen(no_vertices_);
 

@@ -29,8 +29,8 @@ class Interleaving {
   /// `tile` x `tile` pixels take all lights together; `radius` is the scene's.
   Interleaving(const gl::ShaderFiles& files, int width, int height, int tile, float radius);
 
-  /// Of pixels (x, y) + tile * (column, row) what `whole` has.
-  void split(const GBuffer& whole, const View& of_share, const GBuffer& share) const;
+  /// Of the share's pixels the depth that `whole` has or, if asked for, all.
+  void split(const GBuffer& whole, const View& of_share, const GBuffer& share, bool all) const;
   /// Forgets all lights.
   void clear();
   /// A group of lights of this share was done, the first, the next, ...
@@ -65,10 +65,10 @@ class Interleaving {
 
   int tile_;
   float plane_distance_;
-  gl::Program split_, find_tiles_, add_rows_, add_columns_;
+  gl::Program split_, find_tiles_, join_tiles_, add_rows_, add_columns_;
   std::vector<gl::Program> add_lights_;  // by formula
-  gl::Texture tiles_, shares_, lights_, stencil_;
-  gl::Framebuffer tile_framebuffer_;
+  gl::Texture tiles_, joins_, shares_, lights_, stencil_;
+  gl::Framebuffer tile_framebuffer_, join_framebuffer_;
   std::vector<Round> rounds_;
   Quads rows_;
   std::array<Quads, 2> irradiance_;  // what there is, and that with lights more

@@ -32,10 +32,10 @@ void Lighting::draw(const View& view, std::span<const LightGroup> groups,
   times_.begin(Stage::kSurfaces);
   surfaces_.draw(view, g_buffer_);
   times_.end();
-  light(view, groups, group_done);
+  light(view, g_buffer_, groups, group_done);
 }
 
-void Lighting::light(const View& view, std::span<const LightGroup> groups,
+void Lighting::light(const View& view, const GBuffer& whole, std::span<const LightGroup> groups,
                      const std::function<bool()>& group_done) {
   if (map_masks_) {
     times_.begin(Stage::kSurfaces);
@@ -51,19 +51,19 @@ void Lighting::light(const View& view, std::span<const LightGroup> groups,
   for (const LightGroup& group : groups) {
     if (shadows_.volumes) shadows_.volumes->draw(group.points, view, mask_framebuffer_, times_);
     last_mask_ = map_masks_ ? &map_masks_->draw(group, g_buffer_, mask_, times_) : &mask_;
-    add(group, *last_mask_);
+    add(group, whole, view);
     if (!group_done()) break;
   }
 }
 
 /// What the lights of the mask's bits give.
-void Lighting::add(const LightGroup& group, const gl::Texture& mask) {
+void Lighting::add(const LightGroup& group, const GBuffer& whole, const View& view) {
   std::array<LightRecord, kLightsInGroup> records;
   std::copy(group.records.begin(), group.records.end(), records.begin());
   light_block_.write(std::span<const LightRecord>(records));
   light_block_.bind_as_uniforms(kLightsBinding);
   times_.begin(Stage::kShading);
-  shading_.add(group, g_buffer_, mask);
+  shading_.add(group, whole, *last_mask_, view);
   times_.end();
 }
 

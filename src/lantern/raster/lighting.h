@@ -40,9 +40,11 @@ class Lighting {
   /// Calls `group_done` after each group; once it returns false the rest is left out.
   void draw(const View& view, std::span<const LightGroup> groups,
             const std::function<bool()>& group_done);
-  /// As draw(), of what is in g_buffer() already.
-  void light(const View& view, std::span<const LightGroup> groups,
+  /// As draw(), of pixels view.first, view.first + view.step, ... of `whole`. Of g_buffer() there
+  /// must be the depth and, if takes_g_buffer(), all.
+  void light(const View& view, const GBuffer& whole, std::span<const LightGroup> groups,
              const std::function<bool()>& group_done);
+  bool takes_g_buffer() const { return map_masks_.has_value(); }
 
   const GBuffer& g_buffer() const { return g_buffer_; }
   /// Which lights of the group that was done last are seen, RGBA8.
@@ -51,7 +53,7 @@ class Lighting {
   const MaskedShading& shading() const { return shading_; }
 
  private:
-  void add(const LightGroup& group, const gl::Texture& mask);
+  void add(const LightGroup& group, const GBuffer& whole, const View& view);
 
   const Surfaces& surfaces_;
   Shadows shadows_;

@@ -45,7 +45,8 @@ void MaskedShading::clear() {
   for (int strip = 0; strip < kStrips; ++strip) glClearBufferuiv(GL_COLOR, strip, none);
 }
 
-void MaskedShading::add(const LightGroup& group, const GBuffer& g_buffer, const gl::Texture& mask) {
+void MaskedShading::add(const LightGroup& group, const GBuffer& g_buffer, const gl::Texture& mask,
+                        const View& view) {
   const gl::Program& program = shade_[static_cast<std::size_t>(group.formula)];
   program.set("u_points", 0, g_buffer.points);
   program.set("u_reflectances", 1, g_buffer.reflectances);
@@ -54,6 +55,8 @@ void MaskedShading::add(const LightGroup& group, const GBuffer& g_buffer, const 
     const auto i = static_cast<std::size_t>(strip);
     program.set(kSums[i], 3 + strip, sums_[0].textures[i]);
   }
+  program.set("u_first", view.first);
+  program.set("u_step", view.step);
   program.set("u_count", static_cast<int>(group.records.size()));
   sums_[1].framebuffer.bind();
   gl::draw_full_screen(no_vertices_);

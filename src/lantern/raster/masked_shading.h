@@ -25,8 +25,10 @@ class MaskedShading {
 
   /// No light.
   void clear();
-  /// And what the lights of the mask's bits give.
-  void add(const LightGroup& group, const GBuffer& g_buffer, const gl::Texture& mask);
+  /// And what the lights of the mask's bits give. `view` is that of the mask and says which pixels
+  /// of the G-buffer its pixels are.
+  void add(const LightGroup& group, const GBuffer& g_buffer, const gl::Texture& mask,
+           const View& view);
   /// All strips into one picture (RGBA32UI), from this pixel on: the bits of three floats and, if
   /// asked for, one for each light of the last group that would give something, were nothing
   /// between.

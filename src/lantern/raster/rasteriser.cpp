@@ -246,11 +246,11 @@ struct Rasteriser::State {
         if (volumes && volumes->needs_depth_of_view()) {
           surfaces.draw(share_view, lighting->g_buffer());
         } else {
-          interleaving.split(whole, share_view, lighting->g_buffer());
+          interleaving.split(whole, share_view, lighting->g_buffer(), lighting->takes_g_buffer());
         }
         times.end();
         std::size_t done = 0;
-        lighting->light(share_view, lights, [&] {
+        lighting->light(share_view, whole, lights, [&] {
           interleaving.take(share, lights[done++], *lighting);
           return group_done();
         });

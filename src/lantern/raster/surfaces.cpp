@@ -44,6 +44,8 @@ bool is_textured(const Scene& scene) {
                      [](const Material& m) { return m.reflectance_texture || m.emission_texture; });
 }
 
+bool has_sky_texture(const Scene& scene) { return scene.sky && scene.sky->texture; }
+
 }  // namespace
 
 GBuffer::GBuffer(int width, int height)
@@ -61,7 +63,8 @@ Surfaces::Surfaces(const Scene& scene, const World& world, const gl::ShaderFiles
                {{"TEXTURED", textured_ ? "1" : "0"}, {"HOLES", "0"}}),
       surface_with_holes_(files, "shaders/surface.vert.glsl", "shaders/surface.frag.glsl",
                           {{"TEXTURED", textured_ ? "1" : "0"}, {"HOLES", "1"}}),
-      sky_(files, "shaders/sky.vert.glsl", "shaders/sky.frag.glsl"),
+      sky_(files, "shaders/sky.vert.glsl", "shaders/sky.frag.glsl",
+           {{"TEXTURED", has_sky_texture(scene) ? "1" : "0"}}),
       no_texture_(gl::Format::kRgba8, 1, 1) {
   const auto use = [&](const std::optional<TextureId>& id) {
     if (id && !textures_.contains(*id)) textures_.emplace(*id, upload(scene.textures[index(*id)]));
@@ -176,12 +179,13 @@ void Surfaces::draw(const View& view, const GBuffer& target) const {
   // Last, so that only what is seen of it is looked up.
   apply({.depth = DepthUse::kFillGaps}, view);
   sky_.set("u_far", far_depth(view));
-  sky_.set("u_corner", view.corner);
-  sky_.set("u_step_x", view.step_x);
-  sky_.set("u_step_y", view.step_y);
   sky_.set("u_radiance", scene_.sky ? scene_.sky->radiance : Rgb(0.0f));
-  set_look_up(sky_, "u_sky", "u_look_up", 0,
-              scene_.sky ? scene_.sky->texture : std::optional<TextureId>());
+  if (has_sky_texture(scene_)) {
+    sky_.set("u_corner", view.corner);
+    sky_.set("u_step_x", view.step_x);
+    sky_.set("u_step_y", view.step_y);
+    set_look_up(sky_, "u_sky", "u_look_up", 0, scene_.sky->texture);
+  }
   gl::draw_full_screen(no_vertices_);
   reset_draw_state();
   gl::check("drawing the surfaces");
