@@ -11,7 +11,9 @@ uniform sampler2D corners;  // three layers of rows
 uniform sampler2D unshot;   // radiosity; w: exposed share of the element
 uniform usampler2D items;
 uniform sampler2D planes;     // of the world's triangles
-uniform sampler2D triangles;  // their corners, three layers of rows
+// Their corners, three layers of rows; w: the first texel in `neighbours`, and how many.
+uniform sampler2D triangles;
+uniform sampler2D neighbours;  // four numbers plus 1, or 0
 uniform int layers;  // of `points`
 uniform int layer;   // the one to use
 
@@ -67,6 +69,25 @@ bool is_between(int triangle, vec3 point, vec3 way) {
   return triangle >= 0 && beyond(triangle, point).x > hair && is_met(triangle, way);
 }
 
+/// Whether the triangle or one that touches it stands between: what no pixel sees, as the side of a
+/// thin wall, lies beside what one sees.
+bool is_between_or_beside(int triangle, vec3 point, vec3 way) {
+  if (triangle < 0) return false;
+  if (is_between(triangle, point, way)) return true;
+  ivec2 size = textureSize(planes, 0);
+  ivec2 there = texel_of(triangle, size);
+  int its_first = int(texelFetch(triangles, there, 0).w);
+  int its_count = int(texelFetch(triangles, there + ivec2(0, size.y), 0).w);
+  int width = textureSize(neighbours, 0).x;
+  for (int i = its_first; i < its_first + its_count; ++i) {
+    ivec4 beside = ivec4(texelFetch(neighbours, ivec2(i % width, i / width), 0)) - 1;
+    for (int k = 0; k < 4; ++k) {
+      if (is_between(beside[k], point, way)) return true;
+    }
+  }
+  return false;
+}
+
 /// The pixel on the way and those half a pixel beside it tell which triangles to ask. Where all see
 /// something before the point it is in shadow; where an edge passes through the triangles
 /// themselves decide, or shadows would grow by half a pixel.
@@ -78,16 +99,23 @@ bool is_lit(vec3 point, vec3 way, vec3 local) {
   int around[5];
   around[4] = seen(local);
   bool hidden = hides(around[4], point);
+  bool alike = true;
   for (int k = 0; k < 4; ++k) {
     float u = (k & 1) == 0 ? -half_pixel : half_pixel;
     float v = (k & 2) == 0 ? -half_pixel : half_pixel;
     vec3 tap = d + (a.z == most ? vec3(u, v, 0.0) : a.x == most ? vec3(0.0, u, v) : vec3(u, 0.0, v));
     around[k] = seen(vec3(tap.xy, max(tap.z, 0.0)));
     hidden = hidden && hides(around[k], point);
+    alike = alike && around[k] == around[4];
   }
   if (hidden) return false;
-  for (int k = 0; k < 5; ++k) {
-    if (is_between(around[k], point, way)) return false;
+  if (alike) return !is_between(around[4], point, way);
+  if (is_between_or_beside(around[4], point, way)) return false;
+  int last = around[4];
+  for (int k = 0; k < 4; ++k) {
+    if (around[k] == around[4] || around[k] == last) continue;
+    last = around[k];
+    if (is_between_or_beside(last, point, way)) return false;
   }
   return true;
 }

@@ -8,6 +8,7 @@
 #include "lantern/radiosity/element_points.h"
 #include "lantern/radiosity/hemicube.h"
 #include "lantern/radiosity_gl/item_buffer.h"
+#include "lantern/radiosity_gl/occluder_textures.h"
 #include "lantern/radiosity_gl/reduction.h"
 #include "lantern/radiosity_gl/texels.h"
 
@@ -80,6 +81,7 @@ class GpuRadiosity::Work {
   gl::Texture points_, normals_, corners_, unshot_texture_, gathered_, received_, tally_;
   gl::Framebuffer gathered_target_, received_target_, tally_target_;
   ItemBuffer items_;
+  OccluderTextures occluders_;
   gl::Program gather_, receive_, count_lost_;
   Reduction arrived_;
   gl::VertexArray no_attributes_;
@@ -111,6 +113,7 @@ GpuRadiosity::Work::Work(const World& world, const Tracer& tracer, const Patches
       received_target_(cleared(received_)),
       tally_target_(cleared(tally_)),
       items_(world, patches.lit.back, options.hemicube, files_),
+      occluders_(world, patches.mesh),
       gather_(files_, "shaders/full_screen.vert.glsl", "shaders/gather.frag.glsl"),
       receive_(files_, "shaders/full_screen.vert.glsl", "shaders/receive.frag.glsl"),
       count_lost_(files_, "shaders/full_screen.vert.glsl", "shaders/receive.frag.glsl",
@@ -239,7 +242,8 @@ void GpuRadiosity::Work::shoot_from(const Cluster& cluster, std::uint32_t shot) 
   gather_.set("unshot", 3, unshot_texture_);
   gather_.set("items", 4, items_.items());
   gather_.set("planes", 5, items_.planes());
-  gather_.set("triangles", 6, items_.triangles());
+  gather_.set("triangles", 6, occluders_.corners());
+  gather_.set("neighbours", 7, occluders_.neighbours());
   gather_.set("layers", static_cast<int>(kPoints));
   gather_.set("layer", static_cast<int>(shots_ % kPoints));
   gather_.set("origin", pose.origin);

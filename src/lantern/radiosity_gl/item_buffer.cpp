@@ -40,19 +40,6 @@ gl::Texture make_planes(const World& world) {
   return make_texture(grid, planes);
 }
 
-gl::Texture make_triangles(const World& world) {
-  constexpr int kCorners = 3;
-  const TexelGrid grid(world.size());
-  std::vector<Vec4> corners(kCorners * grid.texels(), Vec4(0.0f));
-  for (std::uint32_t t = 0; t < world.size(); ++t) {
-    for (int k = 0; k < kCorners; ++k) {
-      corners[static_cast<std::size_t>(k) * grid.texels() + t] =
-          Vec4(world.positions[world.triangles[t][k]], 0.0f);
-    }
-  }
-  return make_texture(grid, corners, kCorners);
-}
-
 /// Half the hair that hemicubes stand off their surface, in scales of the scene: nothing that could
 /// be seen is nearer.
 constexpr float kNear = 0x1p-19f;
@@ -69,7 +56,6 @@ ItemBuffer::ItemBuffer(const World& world, const std::vector<bool>& back_alive, 
       vertices_({{.location = 0, .buffer = &positions_, .channels = 3, .integer = false},
                  {.location = 1, .buffer = &surfaces_, .channels = 1, .integer = true}}),
       planes_(make_planes(world)),
-      triangles_(make_triangles(world)),
       items_(gl::Format::kR32ui, resolution, 3 * resolution),
       depth_(gl::Format::kDepth32f, resolution, 3 * resolution),
       framebuffer_({&items_}, &depth_),

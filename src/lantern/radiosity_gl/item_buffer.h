@@ -34,8 +34,6 @@ class ItemBuffer {
   const gl::Texture& items() const { return items_; }
   /// Of the triangles: dot(xyz, x) + w = 0.
   const gl::Texture& planes() const { return planes_; }
-  /// Their corners, in three layers.
-  const gl::Texture& triangles() const { return triangles_; }
   /// One texel: the sum of all delta form factors, and of those that see nothing alive.
   const gl::Texture& lost() const { return lost_sum_.result(); }
 
@@ -45,7 +43,7 @@ class ItemBuffer {
   GLsizei vertex_count_;
   gl::Buffer positions_, surfaces_;
   gl::VertexArray vertices_;
-  gl::Texture planes_, triangles_, items_, depth_;
+  gl::Texture planes_, items_, depth_;
   gl::Framebuffer framebuffer_;
   gl::Program draw_items_, find_lost_;
   gl::Texture lost_;  // one texel for each block of the items
