@@ -144,10 +144,11 @@ int main(int argc, char** argv) {
   });
   const double map_drawing = cost([&] {
     maps.keep({});
-    for (const LightGroup& group : groups) maps.draw(group, times);
+    for (const LightGroup& group : groups) maps.draw(group, world.bounds, times);
   });
   // Whole frames but for the resolve: surfaces are drawn in a hundredth of the time.
-  Lighting lighting(surfaces, {.volumes = nullptr, .maps = &maps}, times, files, {kWidth, kHeight});
+  Lighting lighting(surfaces, {.volumes = nullptr, .maps = {&maps}}, times, files,
+                    {kWidth, kHeight});
   const double map_shading = cost([&] { lighting.draw(view, groups, [] { return true; }); });
   const EdgeList list(world, find_walls(world));
   double edges = 0;

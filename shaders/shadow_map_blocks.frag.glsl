@@ -2,19 +2,19 @@
 // Finishes maps: what each texel sees, and each block of two by two.
 #include "shaders/shadow_map.glsl"
 
-uniform highp usampler2D u_texels;
+uniform highp usampler2D u_texels;  // of this map alone
 uniform bool u_halves;  // two lights a map
 
 layout(location = 0) out uvec4 o_block;
 layout(location = 1) out uvec4 o_number;
 
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy), in_map = at & (u_map_size - 1);
+  ivec2 in_map = ivec2(gl_FragCoord.xy) & (u_map_size - 1);
   int side = off_diamond(in_map);
   uvec3 seen[4];  // number, depth, patch
   for (int i = 0; i < 4; ++i) {
     ivec2 texel = min(in_map + ivec2(i & 1, i >> 1), ivec2(u_map_size - 1));
-    seen[i] = texelFetch(u_texels, at - in_map + texel, 0).xyz;
+    seen[i] = texelFetch(u_texels, texel, 0).xyz;
     if (u_halves && side * off_diamond(texel) <= 0) seen[i] = seen[0];
     if (seen[i].x == 0u) seen[i].yz = uvec2(kInfinitelyFar << 16, 0u);
   }

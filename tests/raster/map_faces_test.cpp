@@ -75,7 +75,7 @@ int drawn_at(const std::vector<MapFace>& faces, const Vec3& point, Vec2 at) {
 
 TEST(MapFaces, ALightOfASurfaceHasItsHemisphereInItsHalfOfTheMap) {
   const LightGroup group = two_lights(LightFormula::kSurface);
-  const std::vector<MapFrame> frames = map_frames(group, cube(), kSize);
+  const std::vector<MapFrame> frames = map_frames(group, {cube(), cube()}, kSize);
   for (std::size_t light = 0; light < 2; ++light) {
     const MapPlace place = map_place(group.formula, light);
     EXPECT_EQ(place.tile, 0);
@@ -97,7 +97,7 @@ TEST(MapFaces, ALightOfASurfaceHasItsHemisphereInItsHalfOfTheMap) {
 
 TEST(MapFaces, APointHasAllDirections) {
   const LightGroup group = two_lights(LightFormula::kPunctual);
-  const std::vector<MapFrame> frames = map_frames(group, cube(), kSize);
+  const std::vector<MapFrame> frames = map_frames(group, {cube(), cube()}, kSize);
   const auto faces = map_faces(frames[1], group.formula, map_place(group.formula, 1).half, cube(),
                                kSize, ClipRange::kFarIs1);
   EXPECT_EQ(faces.size(), 8u);
@@ -111,7 +111,7 @@ TEST(MapFaces, APointHasAllDirections) {
 
 TEST(MapFaces, FromInfinityAllOfTheSceneIsInside) {
   const LightGroup group = two_lights(LightFormula::kDirectional);
-  const MapFrame frame = map_frames(group, cube(), kSize)[0];
+  const MapFrame frame = map_frames(group, {cube(), cube()}, kSize)[0];
   for (const ClipRange range : {ClipRange::kFarIs0, ClipRange::kFarIs1}) {
     const auto faces = map_faces(frame, group.formula, MapHalf::kWhole, cube(), kSize, range);
     ASSERT_EQ(faces.size(), 1u);
@@ -126,6 +126,46 @@ TEST(MapFaces, FromInfinityAllOfTheSceneIsInside) {
                   glm::dot(Vec3(frame.z), p) + frame.z.w, 1e-5f);
     }
   }
+}
+
+TEST(MapFaces, FromInfinityABoxThatIsLookedAtFillsTheMap) {
+  const LightGroup group = two_lights(LightFormula::kDirectional);
+  const Bounds seen = snapped({Vec3(0.4f, -1.1f, 2.0f), Vec3(0.9f, -0.8f, 2.9f)}, cube());
+  const MapFrame frame = map_frames(group, {cube(), seen}, kSize)[0];
+  const MapFace face =
+      map_faces(frame, group.formula, MapHalf::kWhole, cube(), kSize, ClipRange::kFarIs0)[0];
+  float widest = 0.0f;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::bvec3 high((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
+    const Vec4 clip = face.clip * Vec4(glm::mix(seen.low, seen.high, high) - face.origin, 1.0f);
+    EXPECT_LT(std::max(std::abs(clip.x), std::abs(clip.y)), 1.0f);
+    widest = std::max(widest, std::max(std::abs(clip.x), std::abs(clip.y)));
+    // What casts shadows there may be anywhere in the scene.
+    const Vec4 far = face.clip * Vec4(glm::mix(cube().low, cube().high, high) - face.origin, 1.0f);
+    EXPECT_LT(std::abs(far.z), 1.0f);
+    EXPECT_GT(far.z, 0.0f);
+  }
+  EXPECT_GT(widest, 0.95f);
+}
+
+TEST(MapFaces, NeighbouringViewsShareABox) {
+  const Bounds seen{Vec3(0.4f, -1.1f, 2.0f), Vec3(0.9f, -0.8f, 2.9f)};
+  const Bounds box = snapped(seen, cube());
+  const Bounds moved = snapped({seen.low + 0.01f, seen.high + 0.01f}, cube());
+  EXPECT_EQ(box.low, moved.low);
+  EXPECT_EQ(box.high, moved.high);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_LE(box.low[axis], seen.low[axis]);
+    EXPECT_GE(box.high[axis], seen.high[axis]);
+    EXPECT_LT(box.high[axis] - box.low[axis], seen.high[axis] - seen.low[axis] + 0.4f);
+  }
+  EXPECT_TRUE(still_fits(box, moved, cube()));
+  // A little more that is seen and gone again takes other maps once.
+  const Bounds more = snapped({seen.low - 0.1f, seen.high + 0.1f}, cube());
+  EXPECT_FALSE(still_fits(box, more, cube()));
+  EXPECT_TRUE(still_fits(more, box, cube()));
+  EXPECT_FALSE(still_fits(cube(), box, cube()));
+  EXPECT_EQ(snapped({}, cube()).low, cube().low);  // nothing but sky is seen
 }
 
 TEST(Clusters, HoldEveryTriangleOnceInsideTheirSpheres) {

@@ -45,7 +45,7 @@ struct Maps {
       : stage(with),
         surfaces(with.scene, with.world, files),
         maps(with.scene, with.world, surfaces, files, options),
-        by_maps(surfaces, {.volumes = nullptr, .maps = &maps}, times, files, {kWidth, kHeight}),
+        by_maps(surfaces, {.volumes = nullptr, .maps = {&maps}}, times, files, {kWidth, kHeight}),
         unshadowed(surfaces, {}, times, files, {kWidth, kHeight}) {}
 
   std::vector<LightGroup> groups(const VirtualLights& lights) const {

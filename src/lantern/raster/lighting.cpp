@@ -24,7 +24,9 @@ Lighting::Lighting(const Surfaces& surfaces, const Shadows& shadows, StageTimes&
                        .height = options.height,
                        .lights_binding = kLightsBinding,
                        .tells_lit = options.tells_lit}) {
-  if (shadows.maps) map_masks_.emplace(*shadows.maps, files, options.width, options.height);
+  for (ShadowMaps* maps : shadows.maps) {
+    map_masks_.emplace_back(*maps, files, options.width, options.height);
+  }
 }
 
 void Lighting::draw(const View& view, std::span<const LightGroup> groups,
@@ -37,11 +39,9 @@ void Lighting::draw(const View& view, std::span<const LightGroup> groups,
 
 void Lighting::light(const View& view, const GBuffer& whole, std::span<const LightGroup> groups,
                      const std::function<bool()>& group_done) {
-  if (map_masks_) {
-    times_.begin(Stage::kSurfaces);
-    map_masks_->look_at(g_buffer_);
-    times_.end();
-  }
+  times_.begin(Stage::kSurfaces);
+  for (MapMasks& masks : map_masks_) masks.look_at(g_buffer_);
+  times_.end();
   shading_.clear();
   if (!shadows_.volumes) {
     const float all_seen[4] = {1.0f, 1.0f, 1.0f, 1.0f};
@@ -50,7 +50,10 @@ void Lighting::light(const View& view, const GBuffer& whole, std::span<const Lig
   }
   for (const LightGroup& group : groups) {
     if (shadows_.volumes) shadows_.volumes->draw(group.points, view, mask_framebuffer_, times_);
-    last_mask_ = map_masks_ ? &map_masks_->draw(group, g_buffer_, mask_, times_) : &mask_;
+    last_mask_ = &mask_;
+    for (MapMasks& masks : map_masks_) {
+      last_mask_ = &masks.draw(group, g_buffer_, *last_mask_, times_);
+    }
     add(group, whole, view);
     if (!group_done()) break;
   }

@@ -15,15 +15,16 @@
 #include "lantern/raster/view.h"
 
 #include <functional>
-#include <optional>
+#include <list>
 #include <span>
+#include <vector>
 
 namespace lantern {
 
 /// Who says which lights are seen; where both are there both must say so.
 struct Shadows {
   StencilShadows* volumes = nullptr;
-  ShadowMaps* maps = nullptr;
+  std::vector<ShadowMaps*> maps = {};
 };
 
 struct LightingOptions {
@@ -44,7 +45,7 @@ class Lighting {
   /// must be the depth and, if takes_g_buffer(), all.
   void light(const View& view, const GBuffer& whole, std::span<const LightGroup> groups,
              const std::function<bool()>& group_done);
-  bool takes_g_buffer() const { return map_masks_.has_value(); }
+  bool takes_g_buffer() const { return !map_masks_.empty(); }
 
   const GBuffer& g_buffer() const { return g_buffer_; }
   /// Which lights of the group that was done last are seen, RGBA8.
@@ -62,7 +63,7 @@ class Lighting {
   gl::Texture mask_;
   gl::Framebuffer mask_framebuffer_;
   gl::Buffer light_block_;
-  std::optional<MapMasks> map_masks_;
+  std::list<MapMasks> map_masks_;
   const gl::Texture* last_mask_ = &mask_;
   MaskedShading shading_;
 };

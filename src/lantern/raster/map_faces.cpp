@@ -11,16 +11,23 @@ Vec2 extent(const Vec3& axis, const Bounds& box) {
   return {low.x + low.y + low.z, high.x + high.y + high.z};
 }
 
-MapFrame parallel_frame(const Vec3& travel, const Bounds& bounds, int size) {
+float grid_step(const Bounds& scene) {
+  constexpr float kSteps = 32.0f;
+  const Vec3 size = scene.high - scene.low;
+  return std::max(size.x, std::max(size.y, size.z)) / kSteps;
+}
+
+MapFrame parallel_frame(const Vec3& travel, const MapBounds& bounds, int size) {
   const Frame frame(travel);
   // A texel at each side stays empty.
   const float used = 1.0f - 2.0f / static_cast<float>(size);
   const auto to_map = [&](const Vec3& axis) {
-    const Vec2 all = extent(axis, bounds);
-    const float scale = 2.0f * used / std::max(all.y - all.x, 1e-3f * bounds.radius());
+    const Vec2 all = extent(axis, bounds.receivers);
+    const float scale = 2.0f * used / std::max(all.y - all.x, 1e-3f * bounds.scene.radius());
     return Vec4(axis * scale, -0.5f * (all.x + all.y) * scale);
   };
-  return {to_map(frame.tangent), to_map(frame.bitangent), Vec4(travel, -extent(travel, bounds).x)};
+  return {to_map(frame.tangent), to_map(frame.bitangent),
+          Vec4(travel, -extent(travel, bounds.scene).x)};
 }
 
 /// Rows of a clip matrix whose depth is w's, as View has it.
@@ -64,12 +71,16 @@ MapFace parallel_face(const MapFrame& frame, const Bounds& bounds, int size, Cli
   const float scale = (near_is_1 ? -0.9f : 1.8f) / deep;
   const Vec4 depth(travel * scale, near_is_1 ? 0.95f : -0.9f);
   face.clip = glm::transpose(Mat4(frame.x, frame.y, depth, Vec4(0.0f, 0.0f, 0.0f, 1.0f)));
+  for (const Vec4& row : {frame.x, frame.y}) {
+    face.planes.push_back(row + Vec4(0.0f, 0.0f, 0.0f, 1.0f));
+    face.planes.push_back(-row + Vec4(0.0f, 0.0f, 0.0f, 1.0f));
+  }
   return face;
 }
 
 }  // namespace
 
-std::vector<MapFrame> map_frames(const LightGroup& group, const Bounds& bounds, int size) {
+std::vector<MapFrame> map_frames(const LightGroup& group, const MapBounds& bounds, int size) {
   std::vector<MapFrame> frames;
   for (const LightRecord& record : group.records) {
     if (group.formula == LightFormula::kDirectional) {
@@ -85,6 +96,25 @@ std::vector<MapFrame> map_frames(const LightGroup& group, const Bounds& bounds, 
                       Vec4(down ? -frame.normal : frame.normal, record.place.z)});
   }
   return frames;
+}
+
+Bounds snapped(const Bounds& receivers, const Bounds& scene) {
+  if (receivers.empty()) return scene;
+  const float step = grid_step(scene);
+  if (!(step > 0.0f)) return scene;
+  const Vec3 low = glm::floor((receivers.low - scene.low) / step);
+  const Vec3 high = glm::ceil((receivers.high - scene.low) / step);
+  return {glm::max(scene.low + step * low, scene.low),
+          glm::min(scene.low + step * high, scene.high)};
+}
+
+bool still_fits(const Bounds& kept, const Bounds& wanted, const Bounds& scene) {
+  const float most = 2.5f * grid_step(scene);  // two steps and rounding
+  const auto fits = [&](const Vec3& more) {
+    return glm::all(glm::greaterThanEqual(more, Vec3(0.0f))) &&
+           glm::all(glm::lessThanEqual(more, Vec3(most)));
+  };
+  return fits(wanted.low - kept.low) && fits(kept.high - wanted.high);
 }
 
 MapPlace map_place(LightFormula formula, std::size_t light) {

@@ -18,8 +18,19 @@ struct MapFrame {
   bool operator==(const MapFrame&) const = default;
 };
 
-/// Of each light of the group. `bounds` of the scene; maps have `size` texels a side.
-std::vector<MapFrame> map_frames(const LightGroup& group, const Bounds& bounds, int size);
+/// What maps are of: all that casts shadows, and where the points are that ask.
+struct MapBounds {
+  Bounds scene, receivers;
+};
+
+/// Of each light of the group; maps have `size` texels a side.
+std::vector<MapFrame> map_frames(const LightGroup& group, const MapBounds& bounds, int size);
+
+/// A box around `receivers` of a grid of the scene, so that most views of a place share one.
+Bounds snapped(const Bounds& receivers, const Bounds& scene);
+
+/// Whether maps of the box `kept` do for `wanted`, both snapped: it is inside and not much smaller.
+bool still_fits(const Bounds& kept, const Bounds& wanted, const Bounds& scene);
 
 /// What of an octahedron belongs to a light.
 enum class MapHalf { kWhole, kInside, kOutside };

@@ -3,7 +3,9 @@
 
 #include "lantern/gl/check.h"
 
+#include <bit>
 #include <string>
+#include <vector>
 
 namespace lantern {
 namespace {
@@ -53,11 +55,29 @@ void MapMasks::look_at(const GBuffer& g_buffer) {
   tile_framebuffer_.bind();
   gl::draw_full_screen(no_vertices_);
   gl::check("drawing what encloses tiles");
+  receivers_.reset();
+}
+
+Bounds MapMasks::bounds_of_tiles() const {
+  const std::vector<std::uint32_t> spheres = tile_framebuffer_.read<std::uint32_t>(0);
+  Bounds bounds;
+  for (std::size_t i = 0; i < spheres.size(); i += 4) {
+    const auto word = [&](std::size_t k) { return std::bit_cast<float>(spheres[i + k]); };
+    const float radius = word(3);
+    if (radius < 0.0f) continue;  // sky alone
+    const Vec3 centre(word(0), word(1), word(2));
+    bounds.add(centre - radius);
+    bounds.add(centre + radius);
+  }
+  return bounds;
 }
 
 const gl::Texture& MapMasks::draw(const LightGroup& group, const GBuffer& g_buffer,
                                   const gl::Texture& asked, StageTimes& times) {
-  maps_.draw(group, times);
+  // Only maps from infinity show what is looked at alone; to read it back takes waiting for the
+  // GPU.
+  if (group.formula == LightFormula::kDirectional && !receivers_) receivers_ = bounds_of_tiles();
+  maps_.draw(group, receivers_.value_or(Bounds{}), times);
   times.begin(Stage::kMaps);
   const Programs& programs = programs_[static_cast<std::size_t>(group.formula)];
   programs.of_tiles.set("u_spheres", 0, spheres_);

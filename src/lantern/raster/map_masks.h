@@ -11,6 +11,7 @@
 #include "lantern/raster/surfaces.h"
 
 #include <array>
+#include <optional>
 
 namespace lantern {
 
@@ -32,11 +33,14 @@ class MapMasks {
     Programs(const gl::ShaderFiles& files, LightFormula formula);
   };
 
+  Bounds bounds_of_tiles() const;
+
   ShadowMaps& maps_;
   gl::Program owners_, tiles_;
   std::array<Programs, kLightFormulas> programs_;
   gl::Texture owner_, spheres_, normals_, told_, mask_;
   gl::Framebuffer owner_framebuffer_, tile_framebuffer_, told_framebuffer_, mask_framebuffer_;
+  std::optional<Bounds> receivers_;  // once they are asked for
   gl::VertexArray no_vertices_;
 };
 

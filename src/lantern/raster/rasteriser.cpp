@@ -15,6 +15,7 @@
 #include "lantern/scene/surface.h"
 
 #include <array>
+#include <list>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -137,7 +138,7 @@ struct Rasteriser::State {
   Surfaces surfaces;
   std::optional<World> solid;  // where some of the world has holes
   std::optional<StencilShadows> volumes;
-  std::optional<ShadowMaps> maps;
+  std::list<ShadowMaps> maps;
   std::optional<Lighting> lighting;
   std::optional<Interleaved> interleaved;
   gl::Program resolve;
@@ -163,15 +164,15 @@ struct Rasteriser::State {
     if (!by_maps && !none_solid) {
       volumes.emplace(all, files, method(with.volumes, gl), solid ? &*solid : nullptr);
     }
-    // Volumes know triangles alone: of what has holes maps tell the shadows.
-    if (by_maps || solid) {
-      maps.emplace(
-          scene, all, surfaces, files,
-          ShadowMapOptions{.range = view_options.range,
-                           .casters = by_maps ? MapCasters::kAll : MapCasters::kWithHoles});
+    Shadows shadows{.volumes = volumes ? &*volumes : nullptr};
+    // What has holes would hide in maps what is behind it; volumes know triangles alone.
+    for (const MapCasters casters : {MapCasters::kSolid, MapCasters::kWithHoles}) {
+      if (casters == MapCasters::kSolid ? !by_maps || none_solid : !solid) continue;
+      maps.emplace_back(scene, all, surfaces, files,
+                        ShadowMapOptions{.range = view_options.range, .casters = casters});
+      shadows.maps.push_back(&maps.back());
     }
-    lighting.emplace(surfaces, Shadows{volumes ? &*volumes : nullptr, maps ? &*maps : nullptr},
-                     times, files,
+    lighting.emplace(surfaces, shadows, times, files,
                      LightingOptions{.width = view_options.columns(),
                                      .height = view_options.rows(),
                                      .tells_lit = with.tile > 1});
@@ -289,7 +290,7 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
     const std::size_t n =
         pass * static_cast<std::size_t>(options.samples) + static_cast<std::size_t>(sample);
     const auto groups = s.groups(lights, bounds, n);
-    if (s.maps) s.maps->keep(groups);
+    for (ShadowMaps& maps : s.maps) maps.keep(groups);
     std::size_t steps = 0, step = 0;
     for (const auto& of_pixel : groups) steps += of_pixel.size();
     s.draw(camera, groups, n, [&] {
@@ -318,7 +319,7 @@ void Rasteriser::draw_frame(const Camera& camera, const VirtualLights& lights,
                             std::span<const float> bounds, std::size_t sample) {
   state_->times.collect();
   const auto groups = state_->groups(lights, bounds, sample);
-  if (state_->maps) state_->maps->keep(groups);
+  for (ShadowMaps& maps : state_->maps) maps.keep(groups);
   state_->draw(camera, groups, sample, [] { return true; });
 }
 

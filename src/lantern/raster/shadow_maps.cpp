@@ -57,9 +57,9 @@ gl::Texture frame_texture(std::span<const MapFrame> frames) {
 
 }  // namespace
 
-ShadowMaps::Unfinished::Unfinished(int width, int height)
-    : texels(gl::Format::kRgba32ui, width, height),
-      depth(gl::Format::kDepth32f, width, height),
+ShadowMaps::Unfinished::Unfinished(int size)
+    : texels(gl::Format::kRgba32ui, size, size),
+      depth(gl::Format::kDepth32f, size, size),
       framebuffer({&texels}, &depth) {}
 
 ShadowMaps::Casters ShadowMaps::casters_of(const Scene& scene, const World& world,
@@ -71,7 +71,7 @@ ShadowMaps::Casters ShadowMaps::casters_of(const Scene& scene, const World& worl
   std::vector<std::size_t> batch_of(world.size());
   Casters casters;
   for (std::uint32_t t = 0; t < world.size(); ++t) {
-    if (which == MapCasters::kWithHoles && !holes(t)) continue;
+    if (holes(t) != (which == MapCasters::kWithHoles)) continue;
     casters.order.push_back(t);
     const std::optional<std::size_t> wall = wall_of(world, t, walls);
     batch_of[t] = holes(t) ? 1 + walls.size() + material(t) : wall ? 1 + *wall : 0;
@@ -136,9 +136,11 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
   if (!world.colours.empty()) add(by_corner(world, casters_.order, world.colours), kColour, 4);
 }
 
-/// All of the scene is in a picture from infinity, near things too.
+/// All that is seen is in a picture from infinity, near things too. Holes have the edges of texels
+/// at any size.
 int ShadowMaps::size_of(LightFormula formula) const {
-  return formula == LightFormula::kDirectional ? 2 * options_.size : options_.size;
+  if (formula != LightFormula::kDirectional) return options_.size;
+  return (options_.casters == MapCasters::kSolid ? 4 : 2) * options_.size;
 }
 
 bool ShadowMaps::are_of(const Maps& maps, const LightGroup& group) {
@@ -168,19 +170,21 @@ void ShadowMaps::make_room(std::size_t bytes) {
   }
 }
 
-void ShadowMaps::draw(const LightGroup& group, StageTimes& times) {
+void ShadowMaps::draw(const LightGroup& group, const Bounds& receivers, StageTimes& times) {
+  const Bounds box = snapped(receivers, bounds_);
   const auto found = std::find_if(kept_.begin(), kept_.end(),
                                   [&](const Maps& maps) { return are_of(maps, group); });
-  if (found != kept_.end()) {
+  if (found != kept_.end() && still_fits(found->receivers, box, bounds_)) {
     kept_.splice(kept_.end(), kept_, found);
     return;
   }
+  if (found != kept_.end()) kept_.erase(found);  // of another place
   const int size = size_of(group.formula);
   const int width = kMapsAcross * size, height = rows_of(group) * size;
   make_room(kTexelBytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  std::vector<MapFrame> frames = map_frames(group, bounds_, size);
+  std::vector<MapFrame> frames = map_frames(group, {.scene = bounds_, .receivers = box}, size);
   gl::Texture frame_texels = frame_texture(frames);
-  kept_.push_back({group.formula, group.records, group.points, std::move(frames),
+  kept_.push_back({group.formula, group.records, group.points, box, std::move(frames),
                    std::move(frame_texels), gl::Texture(gl::Format::kRg32ui, width, height),
                    gl::Texture(gl::Format::kRg32ui, width / kCell, height / kCell),
                    gl::Texture(gl::Format::kR32ui, width, height)});
@@ -190,27 +194,31 @@ void ShadowMaps::draw(const LightGroup& group, StageTimes& times) {
 }
 
 void ShadowMaps::draw(const Maps& maps) {
-  const int width = maps.blocks.width(), height = maps.blocks.height();
-  const Unfinished& unfinished =
-      unfinished_.try_emplace({width, height}, width, height).first->second;
-  unfinished.framebuffer.bind();
+  const int size = size_of(maps.formula);
+  const Unfinished& unfinished = unfinished_.try_emplace(size, size).first->second;
+  const gl::Framebuffer finished({&maps.blocks, &maps.numbers});
   View view{};
   view.near_is_1 = options_.range == ClipRange::kFarIs0;
-  apply({.depth = DepthUse::kDraw}, view);
-  const GLuint nothing[4] = {};
-  glClearBufferuiv(GL_COLOR, 0, nothing);
-  const float far = far_depth(view);
-  glClearBufferfv(GL_DEPTH, 0, &far);
-  for (std::size_t i = 0; i < maps.frames.size(); ++i) draw_light(maps, i);
+  for (std::size_t light = 0; light < maps.frames.size();) {
+    const int tile = map_place(maps.formula, light).tile;
+    unfinished.framebuffer.bind();
+    apply({.depth = DepthUse::kDraw}, view);
+    const GLuint nothing[4] = {};
+    glClearBufferuiv(GL_COLOR, 0, nothing);
+    const float far = far_depth(view);
+    glClearBufferfv(GL_DEPTH, 0, &far);
+    for (; light < maps.frames.size() && map_place(maps.formula, light).tile == tile; ++light) {
+      draw_light(maps, light);
+    }
+    reset_draw_state();
+    finished.bind();
+    glViewport(tile % kMapsAcross * size, tile / kMapsAcross * size, size, size);
+    blocks_.set("u_texels", 0, unfinished.texels);
+    blocks_.set("u_map_size", size);
+    blocks_.set("u_halves", maps.formula == LightFormula::kSurface ? 1 : 0);
+    gl::draw_full_screen(no_vertices_);
+  }
   drawn_ += maps.frames.size();
-  reset_draw_state();
-
-  const gl::Framebuffer finished({&maps.blocks, &maps.numbers});
-  finished.bind();
-  blocks_.set("u_texels", 0, unfinished.texels);
-  blocks_.set("u_map_size", size_of(maps.formula));
-  blocks_.set("u_halves", maps.formula == LightFormula::kSurface ? 1 : 0);
-  gl::draw_full_screen(no_vertices_);
   const gl::Framebuffer coarse({&maps.cells});
   coarse.bind();
   cells_.set("u_blocks", 0, maps.blocks);
@@ -245,7 +253,6 @@ void ShadowMaps::draw_light(const Maps& maps, std::size_t light) {
   indices_.write(std::span<const std::uint32_t>(indices));
   array_.bind();
   glVertexAttrib4f(kColour, 1.0f, 1.0f, 1.0f, 1.0f);
-  const glm::ivec2 corner = glm::ivec2(place.tile % kMapsAcross, place.tile / kMapsAcross) * size;
   std::size_t first = 0, part = 0;
   for (const Batch& batch : casters_.batches) {
     const gl::Program& program = batch.material_with_holes ? with_holes_ : solid_;
@@ -254,7 +261,6 @@ void ShadowMaps::draw_light(const Maps& maps, std::size_t light) {
       program.set("u_seed", seed_of(maps.frames[light]));
     }
     program.set("u_map_size", size);
-    program.set("u_corner", corner);
     // Of two lights in a map neither has the diamond between them.
     program.set("u_on", place.half == MapHalf::kWhole ? 0 : -1);
     for (const MapFace& face : faces) {
@@ -262,7 +268,7 @@ void ShadowMaps::draw_light(const Maps& maps, std::size_t light) {
       program.set("u_side", face.side);
       program.set("u_clip", face.clip);
       program.set("u_depth", face.depth);
-      glViewport(corner.x + face.x, corner.y + face.y, face.size, face.size);
+      glViewport(face.x, face.y, face.size, face.size);
       const std::size_t end = ends[part++];
       glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(end - first), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(first * sizeof(std::uint32_t)));

@@ -27,13 +27,13 @@
 
 namespace lantern {
 
-enum class MapCasters { kAll, kWithHoles };  // kWithHoles: those whose material has_holes()
+enum class MapCasters { kSolid, kWithHoles };  // by the material's has_holes()
 
 struct ShadowMapOptions {
-  int size = 256;  // texels a side of an octahedron, a power of two; from infinity twice that
-  std::size_t bytes = 256ull << 20;  // that maps may take; the group in use always has its own
+  int size = 256;  // texels a side of an octahedron, a power of two; see size_of() for others
+  std::size_t bytes = 768ull << 20;  // that maps may take; the group in use always has its own
   ClipRange range = ClipRange::kFarIs0;
-  MapCasters casters = MapCasters::kAll;
+  MapCasters casters = MapCasters::kSolid;
 };
 
 class ShadowMaps {
@@ -44,8 +44,9 @@ class ShadowMaps {
 
   /// Forgets the maps of all lights but these, the groups of one or several views.
   void keep(std::span<const std::vector<LightGroup>> groups);
-  /// Draws the group's maps unless they are there still.
-  void draw(const LightGroup& group, StageTimes& times);
+  /// Draws the group's maps unless they are there still. Those from infinity show the box of a grid
+  /// around the points that will ask, `receivers`.
+  void draw(const LightGroup& group, const Bounds& receivers, StageTimes& times);
   /// What shaders/shadow_maps.glsl takes of the group that was drawn last, on two texture units
   /// from `unit` on.
   void set_in(const gl::Program& program, int unit) const;
@@ -62,16 +63,17 @@ class ShadowMaps {
     LightFormula formula;
     std::vector<LightRecord> lights;
     std::vector<LightPoint> points;
+    Bounds receivers;
     std::vector<MapFrame> frames;
     gl::Texture frame_texels, blocks, cells, numbers;
     std::size_t bytes() const;
   };
 
-  /// What maps are drawn into first.
+  /// What a map is drawn into first.
   struct Unfinished {
     gl::Texture texels, depth;
     gl::Framebuffer framebuffer;
-    Unfinished(int width, int height);
+    explicit Unfinished(int size);
   };
 
   /// Casters that are drawn with the same uniforms or left out together: the solid ones, those in a
@@ -102,7 +104,7 @@ class ShadowMaps {
   std::vector<gl::Buffer> attributes_;
   gl::Buffer indices_;
   gl::VertexArray array_;
-  std::map<std::pair<int, int>, Unfinished> unfinished_;  // by size
+  std::map<int, Unfinished> unfinished_;  // by size
   gl::VertexArray no_vertices_;
   std::list<Maps> kept_;  // the one that was used last is the last
   std::size_t drawn_ = 0;
