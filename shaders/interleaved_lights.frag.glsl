@@ -9,7 +9,7 @@ uniform highp usampler2D u_points;
 uniform highp usampler2D u_reflectances;
 uniform highp usampler2D u_shares;  // alpha: bits of the lights that would give something
 uniform sampler2D u_masks;          // those that are seen
-uniform sampler2D u_lights_of;      // a row for each share: 32 lights, how many there are
+uniform highp usampler2D u_lights_of;  // of each share the first and how many
 uniform sampler2D u_red, u_green, u_blue;  // what there is
 uniform bool u_first_lights;
 uniform float u_plane_distance;  // as far off is another surface
@@ -28,12 +28,6 @@ Point point_at(ivec2 at) {
 uint mask_at(ivec2 place) {
   uvec4 bytes = uvec4(texelFetch(u_masks, place, 0) * 255.0 + 0.5);
   return bytes.r | (bytes.g << 8) | (bytes.b << 16) | (bytes.a << 24);
-}
-
-Light light_of(int share, int i) {
-  return Light(texelFetch(u_lights_of, ivec2(3 * i, share), 0),
-               texelFetch(u_lights_of, ivec2(3 * i + 1, share), 0),
-               texelFetch(u_lights_of, ivec2(3 * i + 2, share), 0));
 }
 
 /// The pixels that are shaded.
@@ -89,7 +83,8 @@ void main() {
                          point_at(at + ivec2(3, 0)));
   vec3 sum0 = vec3(0.0), sum1 = vec3(0.0), sum2 = vec3(0.0), sum3 = vec3(0.0);
   for (int share = 0; share < TILE * TILE; ++share) {
-    int count = int(texelFetch(u_lights_of, ivec2(96, share), 0).r);
+    uvec2 lights = texelFetch(u_lights_of, ivec2(share, 0), 0).rg;
+    int first = int(lights.x), count = int(lights.y);
     // Its pixels around: in two columns and two rows.
     int x0 = at.x - TILE / 2, y1 = at.y + TILE;
     x0 += (share % TILE - x0) & (TILE - 1);
@@ -107,7 +102,7 @@ void main() {
     uint any_seen = a.seen | b.seen | c.seen | d.seen | ~(a.lit | b.lit | c.lit | d.lit);
     uvec4 others = any_seen & ~(lit_a | lit_b | lit_c | lit_d);
     for (int i = 0; i < count; ++i) {
-      Light light = light_of(share, i);
+      Light light = u_lights[first + i];
       vec4 lit = a.near * bit(lit_a, i) + b.near * bit(lit_b, i) + c.near * bit(lit_c, i) +
                  d.near * bit(lit_d, i);
       vec4 seen = a.near * bit(seen_a, i) + b.near * bit(seen_b, i) + c.near * bit(seen_c, i) +

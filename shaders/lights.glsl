@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Up to 32 lights of one kind (KIND: 0 surface, 1 point or spot, 2 directional) and what they give.
+// Up to LIGHTS (32) lights of one kind (KIND: 0 surface, 1 point or spot, 2 directional) and what
+// they give.
 #include "shaders/light_share.glsl"
 
 struct Light {
@@ -7,7 +8,10 @@ struct Light {
   vec4 axis;     // normal or axis; cosine of outer
   vec4 strength; // intensity, or irradiance from infinity
 };
-layout(std140) uniform Lights { Light u_lights[32]; };
+#ifndef LIGHTS
+#define LIGHTS 32
+#endif
+layout(std140) uniform Lights { Light u_lights[LIGHTS]; };
 
 struct Point {
   vec3 position, shading, geometric;

@@ -235,6 +235,18 @@ TEST(Pictures, InterleavedComesClose) {
   }
 }
 
+/// More than one group of 32 for each share, of all formulas, and more than one block of them.
+TEST(Pictures, InterleavedTakesManyLightsOfEveryKind) {
+  const Scene scene = exhibition();
+  RenderOptions options = small(700);
+  const Image all = picture(scene, options, Backend::kGl);
+  options.tile = 2;
+  const Image shared = picture(scene, options, Backend::kGl);
+  EXPECT_LT(mean_difference(shared, all), 0.01);
+  const Comparison comparison = compare(shared, all);
+  EXPECT_NEAR(comparison.mean_a.g / comparison.mean_b.g, 1.0, 0.002);
+}
+
 /// What maps miss is more slender than a texel, a fiftieth of a radian, and not next to a triangle
 /// that a texel sees.
 TEST(Pictures, MapsComeClose) {

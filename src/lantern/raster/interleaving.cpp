@@ -5,7 +5,6 @@
 #include "lantern/raster/draw_state.h"
 
 #include <algorithm>
-#include <iterator>
 #include <string>
 
 namespace lantern {
@@ -30,8 +29,9 @@ std::vector<std::vector<std::uint32_t>> share_out(const VirtualLights& lights, s
 
 namespace {
 
-// As shaders/interleaved_lights.frag.glsl reads them: three texels a light, how many there are.
-constexpr int kLightTexels = 3 * static_cast<int>(kLightsInGroup);
+constexpr GLuint kLightsBinding = 0;
+/// As many as every GL has room for in a uniform block.
+constexpr std::size_t kLightsInBlock = 16384 / sizeof(LightRecord);
 
 int in_tiles(int pixels, int tile) { return (pixels + tile - 1) / tile; }
 
@@ -78,10 +78,10 @@ Interleaving::Interleaving(const gl::ShaderFiles& files, int width, int height, 
       add_columns_(program_of(files, "shaders/interleaved_columns.frag.glsl", tile)),
       tiles_(gl::Format::kRgba32ui, in_tiles(width, tile), in_tiles(height, tile)),
       joins_(gl::Format::kR32ui, tiles_.width(), tiles_.height()),
-      shares_(gl::Format::kRgba32ui, tile * tiles_.width(), tile * tiles_.height()),
-      lights_(gl::Format::kRgba32f, kLightTexels + 1, tile * tile),
+      of_shares_(gl::Format::kRg32ui, tile * tile, 1),
       stencil_(gl::Format::kDepth32fStencil8, in_tiles(width, columns_of(tile)) * tile,
                tiles_.height()),
+      lights_(std::span<const LightRecord>()),
       tile_framebuffer_({&tiles_}),
       join_framebuffer_({&joins_}),
       rows_(stencil_.width(), stencil_.height(), nullptr),
@@ -90,8 +90,10 @@ Interleaving::Interleaving(const gl::ShaderFiles& files, int width, int height, 
   for (int formula = 0; formula < kLightFormulas; ++formula) {
     std::vector<gl::Definition> with = definitions(tile);
     with.push_back({"KIND", std::to_string(formula)});
+    with.push_back({"LIGHTS", std::to_string(kLightsInBlock)});
     add_lights_.emplace_back(files, "shaders/full_screen.vert.glsl",
                              "shaders/interleaved_lights.frag.glsl", with);
+    add_lights_.back().set_block("Lights", kLightsBinding);
   }
 }
 
@@ -110,7 +112,12 @@ void Interleaving::split(const GBuffer& whole, const View& of_share, const GBuff
   gl::check("splitting");
 }
 
-void Interleaving::clear() {
+void Interleaving::begin(std::size_t rounds) {
+  rounds = std::max<std::size_t>(rounds, 1);
+  while (rounds_.size() > rounds) rounds_.pop_back();
+  while (rounds_.size() < rounds) {
+    rounds_.emplace_back(tile_ * glm::ivec2(tiles_.width(), tiles_.height()), tile_);
+  }
   for (Round& round : rounds_) {
     std::fill(round.groups.begin(), round.groups.end(), std::nullopt);
   }
@@ -120,51 +127,59 @@ std::size_t Interleaving::number(const glm::ivec2& share) const {
   return static_cast<std::size_t>(share.y * tile_ + share.x);
 }
 
-void Interleaving::take(const glm::ivec2& share, const LightGroup& group, const Lighting& done) {
-  const std::size_t i = number(share);
-  auto round = std::find_if(rounds_.begin(), rounds_.end(),
-                            [&](const Round& r) { return !r.groups[i].has_value(); });
-  if (round == rounds_.end()) {
-    rounds_.emplace_back(glm::ivec2(shares_.width(), shares_.height()), tile_);
-    round = std::prev(rounds_.end());
-  }
-  round->groups[i] = group;
-  const int x = share.x * tiles_.width(), y = share.y * tiles_.height();
-  done.shading().copy_to(round->shares, x, y);
+glm::ivec2 Interleaving::corner(const glm::ivec2& share) const {
+  return share * glm::ivec2(tiles_.width(), tiles_.height());
+}
+
+void Interleaving::take(const glm::ivec2& share, std::size_t number_of_group,
+                        const LightGroup& group, const Lighting& done) {
+  Round& round = rounds_[number_of_group];
+  round.groups[number(share)] = group;
+  const glm::ivec2 at = corner(share);
+  done.shading().copy_to(round.shares, at.x, at.y);
   const gl::Framebuffer masks({&done.mask()});
   masks.bind();
-  round->masks.bind(0);
-  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, x, y, 0, 0, tiles_.width(), tiles_.height());
+  round.masks.bind(0);
+  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, at.x, at.y, 0, 0, tiles_.width(), tiles_.height());
   gl::check("copying a share of the lights");
 }
 
-void Interleaving::take(const glm::ivec2& share, const MaskedShading& irradiance) {
-  irradiance.copy_to(shares_, share.x * tiles_.width(), share.y * tiles_.height());
+void Interleaving::end(const glm::ivec2& share, const MaskedShading& irradiance) {
+  const Round& last = rounds_.back();
+  const glm::ivec2 at = corner(share);
+  if (!last.groups[number(share)]) irradiance.copy_to(last.shares, at.x, at.y);
 }
 
-/// What the lights of this formula give where the surface is not flat.
-void Interleaving::add(const GBuffer& whole, const Round& round, LightFormula formula, bool first) {
-  std::vector<Vec4> texels;
-  for (const std::optional<LightGroup>& group : round.groups) {
-    const std::size_t end = texels.size() + static_cast<std::size_t>(kLightTexels);
-    std::size_t count = 0;
-    if (group && group->formula == formula) {
-      count = group->records.size();
-      for (const LightRecord& light : group->records) {
-        texels.insert(texels.end(), {light.place, light.axis, light.strength});
-      }
+void Interleaving::append_passes(const Round& round, LightFormula formula,
+                                 std::vector<Pass>& passes) {
+  const std::size_t shares = round.groups.size();
+  Pass* open = nullptr;
+  for (std::size_t share = 0; share < shares; ++share) {
+    const std::optional<LightGroup>& group = round.groups[share];
+    if (!group || group->formula != formula) continue;
+    if (!open || open->lights.size() + group->records.size() > kLightsInBlock) {
+      passes.push_back({.round = &round, .formula = formula, .lights = {}, .of_shares = {}});
+      open = &passes.back();
+      open->of_shares.resize(shares);
     }
-    texels.resize(end);
-    texels.emplace_back(static_cast<float>(count));
+    open->of_shares[share] = {open->lights.size(), group->records.size()};
+    open->lights.insert(open->lights.end(), group->records.begin(), group->records.end());
   }
-  lights_.write(std::span<const float>(&texels[0].x, 4 * texels.size()));
-  const gl::Program& program = add_lights_[static_cast<std::size_t>(formula)];
+}
+
+void Interleaving::add(const GBuffer& whole, const Pass& pass, bool first) {
+  std::vector<LightRecord> lights = pass.lights;
+  lights.resize(kLightsInBlock);
+  lights_.write(std::span<const LightRecord>(lights));
+  lights_.bind_as_uniforms(kLightsBinding);
+  of_shares_.write(std::span<const std::uint32_t>(&pass.of_shares[0].x, 2 * pass.of_shares.size()));
+  const gl::Program& program = add_lights_[static_cast<std::size_t>(pass.formula)];
   program.set("u_plane_distance", plane_distance_);
   program.set("u_points", 0, whole.points);
   program.set("u_reflectances", 1, whole.reflectances);
-  program.set("u_shares", 2, round.shares);
-  program.set("u_masks", 3, round.masks);
-  program.set("u_lights_of", 4, lights_);
+  program.set("u_shares", 2, pass.round->shares);
+  program.set("u_masks", 3, pass.round->masks);
+  program.set("u_lights_of", 4, of_shares_);
   program.set("u_first_lights", first ? 1 : 0);
   irradiance_[0].set_in(program, 5);
   irradiance_[1].framebuffer.bind();
@@ -173,6 +188,7 @@ void Interleaving::add(const GBuffer& whole, const Round& round, LightFormula fo
 }
 
 void Interleaving::filter(const GBuffer& whole, const View& view) {
+  const gl::Texture& all_lights = rounds_.back().shares;
   find_tiles_.set("u_plane_distance", plane_distance_);
   find_tiles_.set("u_points", 0, whole.points);
   tile_framebuffer_.bind();
@@ -180,27 +196,19 @@ void Interleaving::filter(const GBuffer& whole, const View& view) {
 
   join_tiles_.set("u_plane_distance", plane_distance_);
   join_tiles_.set("u_tiles", 0, tiles_);
-  join_tiles_.set("u_shares", 1, shares_);
+  join_tiles_.set("u_shares", 1, all_lights);
   join_framebuffer_.bind();
   gl::draw_full_screen(no_vertices_);
 
   add_rows_.set("u_joins", 0, joins_);
-  add_rows_.set("u_shares", 1, shares_);
+  add_rows_.set("u_shares", 1, all_lights);
   rows_.framebuffer.bind();
   gl::draw_full_screen(no_vertices_);
 
-  struct Pass {
-    const Round& round;
-    LightFormula formula;
-  };
   std::vector<Pass> passes;
   for (const Round& round : rounds_) {
     for (int i = 0; i < kLightFormulas; ++i) {
-      const auto formula = static_cast<LightFormula>(i);
-      const bool any =
-          std::any_of(round.groups.begin(), round.groups.end(),
-                      [&](const auto& group) { return group && group->formula == formula; });
-      if (any) passes.push_back({round, formula});
+      append_passes(round, static_cast<LightFormula>(i), passes);
     }
   }
 
@@ -213,7 +221,7 @@ void Interleaving::filter(const GBuffer& whole, const View& view) {
   gl::draw_full_screen(no_vertices_);
 
   apply({.stencil = StencilUse::kMatch, .reference = 0}, view);
-  for (const Pass& pass : passes) add(whole, pass.round, pass.formula, &pass == &passes.front());
+  for (const Pass& pass : passes) add(whole, pass, &pass == &passes.front());
   reset_draw_state();
   gl::check("filtering");
 }

@@ -31,12 +31,13 @@ class Interleaving {
 
   /// Of the share's pixels the depth that `whole` has or, if asked for, all.
   void split(const GBuffer& whole, const View& of_share, const GBuffer& share, bool all) const;
-  /// Forgets all lights.
-  void clear();
+  /// Forgets all lights. No share will have more groups of them than this.
+  void begin(std::size_t rounds);
   /// A group of lights of this share was done, the first, the next, ...
-  void take(const glm::ivec2& share, const LightGroup& group, const Lighting& done);
-  /// And all of them.
-  void take(const glm::ivec2& share, const MaskedShading& irradiance);
+  void take(const glm::ivec2& share, std::size_t number_of_group, const LightGroup& group,
+            const Lighting& done);
+  /// All were, or none more will be.
+  void end(const glm::ivec2& share, const MaskedShading& irradiance);
 
   /// The irradiance of all pixels by all lights, in W/m².
   void filter(const GBuffer& whole, const View& view);
@@ -53,21 +54,34 @@ class Interleaving {
     Quads(int width, int height, const gl::Texture* stencil);
     void set_in(const gl::Program& program, int unit) const;
   };
-  /// One group of each share.
+  /// One group of each share. The last round's shares have the irradiance by all groups.
   struct Round {
     gl::Texture shares, masks;
     std::vector<std::optional<LightGroup>> groups;
     Round(const glm::ivec2& size, int tile);
   };
 
+  /// As many lights of a round and a formula as go into one uniform block.
+  struct Pass {
+    const Round* round;
+    LightFormula formula;
+    std::vector<LightRecord> lights;
+    std::vector<glm::uvec2> of_shares;  // the first of each share's, how many
+  };
+
   std::size_t number(const glm::ivec2& share) const;
-  void add(const GBuffer& whole, const Round& round, LightFormula formula, bool first);
+  /// Where its picture stands among the others.
+  glm::ivec2 corner(const glm::ivec2& share) const;
+  static void append_passes(const Round& round, LightFormula formula, std::vector<Pass>& passes);
+  /// What these lights give where tiles are not smooth.
+  void add(const GBuffer& whole, const Pass& pass, bool first);
 
   int tile_;
   float plane_distance_;
   gl::Program split_, find_tiles_, join_tiles_, add_rows_, add_columns_;
   std::vector<gl::Program> add_lights_;  // by formula
-  gl::Texture tiles_, joins_, shares_, lights_, stencil_;
+  gl::Texture tiles_, joins_, of_shares_, stencil_;
+  gl::Buffer lights_;
   gl::Framebuffer tile_framebuffer_, join_framebuffer_;
   std::vector<Round> rounds_;
   Quads rows_;

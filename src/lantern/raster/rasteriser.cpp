@@ -14,6 +14,7 @@
 #include "lantern/sampling/kronecker.h"
 #include "lantern/scene/surface.h"
 
+#include <algorithm>
 #include <array>
 #include <list>
 #include <optional>
@@ -234,7 +235,11 @@ struct Rasteriser::State {
     times.begin(Stage::kSurfaces);
     surfaces.draw(view, whole);
     times.end();
-    interleaving.clear();
+    std::size_t rounds = 0;
+    for (const std::vector<LightGroup>& of_share : groups) {
+      rounds = std::max(rounds, of_share.size());
+    }
+    interleaving.begin(rounds);
     ViewOptions of_share = view_options;
     of_share.offset = place_in_pixel(n);
     for (of_share.first.y = 0; of_share.first.y < options.tile; ++of_share.first.y) {
@@ -252,10 +257,11 @@ struct Rasteriser::State {
         times.end();
         std::size_t done = 0;
         lighting->light(share_view, whole, lights, [&] {
-          interleaving.take(share, lights[done++], *lighting);
+          interleaving.take(share, done, lights[done], *lighting);
+          ++done;
           return group_done();
         });
-        interleaving.take(share, lighting->shading());
+        interleaving.end(share, lighting->shading());
       }
     }
     times.begin(Stage::kFilter);
