@@ -12,8 +12,8 @@
 
 namespace lantern {
 
-/// Of each triangle of the world the others that it shares a vertex of the mesh with, and so, as the
-/// mesh has no T-junctions, a part of an edge or a corner; in ascending order. `mesh` is the
+/// Of each triangle of the world the others that it shares a vertex of the mesh with, and so, as
+/// the mesh has no T-junctions, a part of an edge or a corner; in ascending order. `mesh` is the
 /// world's, refined or not.
 std::vector<std::vector<std::uint32_t>> neighbours_of_triangles(const World& world,
                                                                 const PatchMesh& mesh);
