@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Irradiance where the surface is not flat: each light gives what it gives to this very point, were
-// nothing between, if it is seen from its share's pixels around on the same surface.
+// Irradiance where tiles are not smooth: each light gives what it gives to this very point, were
+// nothing between, as far as it is seen from its share's pixels around on the same surface.
 #include "shaders/interleaved.glsl"
 #include "shaders/lights.glsl"
 #include "shaders/octahedral.glsl"
 
 uniform highp usampler2D u_points;
 uniform highp usampler2D u_reflectances;
-uniform highp usampler2D u_shares;  // alpha: bits of the lights that would give something
-uniform sampler2D u_masks;          // those that are seen
-uniform highp usampler2D u_lights_of;  // of each share the first and how many
+uniform highp usampler2D u_shares;         // alpha: bits of the lights that would give something
+uniform sampler2D u_masks;                 // bits of those that are seen
+uniform highp usampler2D u_lights_of;      // of each share the first and how many
 uniform sampler2D u_red, u_green, u_blue;  // what there is
-uniform bool u_first_lights;
-uniform float u_plane_distance;  // as far off is another surface
+uniform bool u_first_lights;               // there is nothing yet
+uniform float u_plane_distance;            // as far off is another surface
 
 layout(location = 0) out vec4 o_red;
 layout(location = 1) out vec4 o_green;

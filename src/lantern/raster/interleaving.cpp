@@ -212,7 +212,7 @@ void Interleaving::filter(const GBuffer& whole, const View& view) {
     }
   }
 
-  // Flat ones, into what the last of the passes over the others will draw into.
+  // Smooth tiles, into what the last of the passes over the others will draw into.
   irradiance_[passes.size() % 2].framebuffer.bind();
   apply({.stencil = StencilUse::kMark, .reference = 1}, view);
   glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(view), 0);
