@@ -34,7 +34,7 @@ struct Room {
         tracer(make_embree_tracer(scene, world)),
         patches(make_patches(scene, world, *tracer, PatchOptions{.count = count})),
         factors(world, *tracer, patches, stop),
-        external(external_irradiance(scene, world, *tracer, patches)) {}
+        external(external_irradiance(scene, world, *tracer, patches, stop)) {}
 
   std::vector<dvec3> irradiance() const {
     return solve_by_gauss_seidel(patches, factors, external, {}, stop).irradiance;

@@ -40,7 +40,7 @@ struct Patched {
   Patched(Scene scene, std::size_t count)
       : stage(std::move(scene)),
         patches(make_patches(stage.scene, stage.world, *stage.tracer, {.count = count})),
-        external(external_irradiance(stage.scene, stage.world, *stage.tracer, patches)) {}
+        external(external_irradiance(stage.scene, stage.world, *stage.tracer, patches, {false})) {}
 
   GpuRadiosity radiosity(const GpuRadiosityOptions& options) const {
     return {stage.world, *stage.tracer, patches, external, options};

@@ -25,7 +25,8 @@ BakedScene bake_scene(const Scene& scene, const BakeSceneOptions& options, const
   const World world = make_traceable_world(scene);
   const std::unique_ptr<Tracer> tracer = make_embree_tracer(scene, world);
   const Patches patches = make_patches(scene, world, *tracer, options.patches);
-  const std::vector<glm::dvec3> external = external_irradiance(scene, world, *tracer, patches);
+  const std::vector<glm::dvec3> external =
+      external_irradiance(scene, world, *tracer, patches, stop);
   require_light(!is_dark(patches.emission) || !is_dark(external));
 
   BakedScene result;

@@ -19,7 +19,7 @@ RadiosityStage::RadiosityStage(const RenderJob& job)
 
 RadiosityStage::RadiosityStage(const RenderJob& job, Patches made)
     : patches(std::move(made)),
-      external(external_irradiance(job.scene, job.world, job.tracer, patches)) {
+      external(external_irradiance(job.scene, job.world, job.tracer, patches, job.stop)) {
   const auto is_lit = [](const glm::dvec3& value) { return value != glm::dvec3(0.0); };
   require_light(job.scene.sky || !job.scene.lights.empty() ||
                 std::any_of(patches.emission.begin(), patches.emission.end(), is_lit));

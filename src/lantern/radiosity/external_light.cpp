@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/radiosity/external_light.h"
 
-#include "lantern/core/parallel.h"
 #include "lantern/radiosity/element_points.h"
 #include "lantern/radiosity/random.h"
 #include "lantern/radiosity/sky_sampler.h"
@@ -98,14 +97,15 @@ class Gatherer {
 }  // namespace
 
 std::vector<glm::dvec3> external_irradiance(const Scene& scene, const World& world,
-                                            const Tracer& tracer, const Patches& patches) {
+                                            const Tracer& tracer, const Patches& patches,
+                                            const StopFlag& stop) {
   std::vector<glm::dvec3> result(patches.elements(), glm::dvec3(0.0));
   if (scene.lights.empty() && !scene.sky) return result;
   constexpr std::size_t kGrain = 16;
   const ElementPoints points(world, tracer, patches);
   const Gatherer gatherer(scene, tracer);
   parallel_for(patches.elements(), kGrain, [&](std::size_t e) {
-    if (patches.exposed[e] == 0.0) return;
+    if (patches.exposed[e] == 0.0 || stop.load()) return;
     const Vec3 normal(patches.element_normal(e));
     for (std::size_t k = 0; k < ElementPoints::kPoints; ++k) {
       result[e] += glm::dvec3(gatherer.at(points.at(e, k), normal, hash(e, k)));
