@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Irradiance where the surface is smooth: rows brought together as the shares of each were.
-#include "shaders/interleaved.glsl"
+#include "shaders/interleaved_quads.glsl"
 
 uniform highp usampler2D u_joins;
 uniform sampler2D u_red, u_green, u_blue;
-
-layout(location = 0) out vec4 o_red;
-layout(location = 1) out vec4 o_green;
-layout(location = 2) out vec4 o_blue;
 
 void main() {
   ivec2 at = first_pixel_of(ivec2(gl_FragCoord.xy)), tile = at / TILE;

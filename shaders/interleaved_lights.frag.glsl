@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Irradiance where tiles are not smooth: each light gives what it gives to this very point, were
 // nothing between, as far as it is seen from its share's pixels around on the same surface.
-#include "shaders/interleaved.glsl"
+#include "shaders/interleaved_quads.glsl"
 #include "shaders/lights.glsl"
 #include "shaders/octahedral.glsl"
 
@@ -13,10 +13,6 @@ uniform highp usampler2D u_lights_of;      // of each share the first and how ma
 uniform sampler2D u_red, u_green, u_blue;  // what there is
 uniform bool u_first_lights;               // there is nothing yet
 uniform float u_plane_distance;            // as far off is another surface
-
-layout(location = 0) out vec4 o_red;
-layout(location = 1) out vec4 o_green;
-layout(location = 2) out vec4 o_blue;
 
 Point point_at(ivec2 at) {
   at = min(at, textureSize(u_points, 0) - 1);

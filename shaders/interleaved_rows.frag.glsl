@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The shares of each row brought together, each by a tent over its two pixels around: what the
 // shares of that row of a tile give.
-#include "shaders/interleaved.glsl"
+#include "shaders/interleaved_quads.glsl"
 
 uniform highp usampler2D u_joins;
 uniform highp usampler2D u_shares;
-
-layout(location = 0) out vec4 o_red;
-layout(location = 1) out vec4 o_green;
-layout(location = 2) out vec4 o_blue;
 
 void main() {
   ivec2 at = first_pixel_of(ivec2(gl_FragCoord.xy)), tile = at / TILE;

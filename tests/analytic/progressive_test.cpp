@@ -276,10 +276,11 @@ TEST(HemicubeMatrix, HalfShadowsAreSeenFromManyPoints) {
       EXPECT_LT(direct[e].seen, 1.0) << e;
     }
   }
-  // Sixteen rays for each element in half shadow, one of ten, and centres of areas for the rest.
+  // Sixteen rays for each element in half shadow and centres of areas for the rest: 0.7 % off.
   EXPECT_NEAR(guessed, total, 0.02 * total);
-  // What is left is the error of the rays, 1/32, and of the pixels.
-  EXPECT_LT(error_of_many, 0.25 * error_of_centres);
+  // Squares: 0.065, of it the error of the rays, 1/32, and of the pixels. The same number of points
+  // anywhere on the elements are worse than centres.
+  EXPECT_LT(error_of_many, 0.15 * error_of_centres);
 }
 
 TEST(HemicubeMatrix, StoppedEarlyTheRestIsBlack) {
