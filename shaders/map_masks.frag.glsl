@@ -1,34 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Which of up to 32 lights each pixel sees: what maps tell of its tile or, where that is nothing, of
-// its point. Where the four texels around leave it open, the ray to the light is met with the
-// triangles that they name: edges of shadows are those of triangles, not of texels. [Lecocq et al.
-// 2014, Sub-pixel Shadow Mapping]
+// the four texels around its point.
+#include "shaders/map_receivers.glsl"
 #include "shaders/map_tiles.glsl"
 #include "shaders/shadow_maps.glsl"
 #include "shaders/triangles.glsl"
 
-uniform highp usampler2D u_points;
-uniform highp usampler2D u_reflectances;
-uniform highp usampler2D u_owners;  // see shaders/map_owners.frag.glsl
-uniform highp usampler2D u_told;    // see shaders/map_tile_masks.frag.glsl
-uniform sampler2D u_mask;           // lights that are asked for
-uniform highp usampler2D u_map_numbers;
-uniform highp sampler2D u_triangles;
+uniform highp usampler2D u_told;  // see shaders/map_tile_masks.frag.glsl
+uniform highp usampler2D u_map_blocks;  // see shaders/shadow_map.glsl
+uniform sampler2D u_mask;         // lights that are asked for
 
 layout(location = 0) out vec4 o_mask;
-
-struct Receiver {
-  vec3 position, geometric;
-  uvec3 owner;
-};
-
-/// Beyond its border an octahedron goes on at the same border, mirrored.
-ivec2 wrapped_texel(ivec2 texel) {
-  ivec2 inside = clamp(texel, ivec2(0), ivec2(u_map_size - 1));
-  if (inside.x != texel.x) return ivec2(inside.x, u_map_size - 1 - inside.y);
-  if (inside.y != texel.y) return ivec2(u_map_size - 1 - inside.x, inside.y);
-  return inside;
-}
+layout(location = 1) out uvec4 o_left;  // seen, and left open: 1 of depth, else 0
 
 const int kShadowed = 0;
 const int kSeen = 1;
@@ -52,154 +35,23 @@ int look_up(int light, Receiver p) {
   return (at.depth - far_of(sees.y)) * cosine > at.reach * at.scale ? kShadowed : kOpen;
 }
 
-/// What is left to ask of a light whose map does not tell by itself.
-struct Question {
-  vec3 way;
-  float reach;      // see MapPoint
-  uvec4 triangles;  // what the four texels around see that may be in the way
-  uint nearest;     // what the one sees in which the point is
-  uint next, last;  // the triangle beyond an edge of the last one, which is asked first, unless 0
-  int steps;        // that it is away from a texel's
-};
-
-const int kMostSteps = 2;
-
-/// What a texel sees, 0 for what is not in the way of any light.
-uint seen_in(ivec2 corner, ivec2 texel, bool is_nearest, Receiver p) {
-  uint seen = texelFetch(u_map_numbers, corner + wrapped_texel(texel), 0).x & (kNumber | kHoles);
-  bool is_owner = (seen & kNumber) - p.owner.x < p.owner.y;
-  // What has holes stops what goes through this very texel.
-  bool is_other_texel = (seen & kHoles) != 0u && !is_nearest;
-  return is_owner || is_other_texel ? 0u : seen;
-}
-
-Question question_for(int light, Receiver p) {
-  LightMap map = map_of(light);
-  Question asked;
-  asked.way = way_to(map, p.position);
-  MapPoint at = find_in_map(light, map, p.position, asked.way);
-  asked.reach = at.reach;
-  ivec2 first = block_of(at.texel), corner = corner_of_map(light);
-  ivec2 off = ivec2(floor(at.texel)) - first;
-  int nearest = off.x + 2 * off.y;
-  uvec4 seen;
-  seen.x = seen_in(corner, first, nearest == 0, p);
-  seen.y = seen_in(corner, first + ivec2(1, 0), nearest == 1, p);
-  seen.z = seen_in(corner, first + ivec2(0, 1), nearest == 2, p);
-  seen.w = seen_in(corner, first + ivec2(1, 1), nearest == 3, p);
-  asked.nearest = nearest == 0 ? seen.x : nearest == 1 ? seen.y : nearest == 2 ? seen.z : seen.w;
-  // Each once.
-  if (seen.y == seen.x) seen.y = 0u;
-  if (seen.z == seen.x || seen.z == seen.y) seen.z = 0u;
-  if (seen.w == seen.x || seen.w == seen.y || seen.w == seen.z) seen.w = 0u;
-  asked.triangles = seen;
-  asked.next = 0u;
-  return asked;
-}
-
-bool is_answered(Question open) {
-  uvec4 left = open.triangles;
-  return (left.x | left.y | left.z | left.w | open.next) == 0u;
-}
-
-/// The next of the triangles that may be in the way.
-uint next_of(inout Question open) {
-  uint next = open.next;
-  if (next != 0u) {
-    open.next = 0u;
-    ++open.steps;
-    return next;
-  }
-  open.steps = 0;
-  open.last = 0u;
-  uvec4 left = open.triangles;
-  if (left.x != 0u) {
-    open.triangles.x = 0u;
-    return left.x;
-  }
-  if (left.y != 0u) {
-    open.triangles.y = 0u;
-    return left.y;
-  }
-  if (left.z != 0u) {
-    open.triangles.z = 0u;
-    return left.z;
-  }
-  open.triangles.w = 0u;
-  return left.w;
-}
-
-/// Whether the next triangle is in the way. [Möller & Trumbore 1997] Behind the edge that the ray
-/// passes by one may be that is too slender for texels.
-bool is_in_way(inout Question open, Receiver p) {
-  uint seen = next_of(open), number = seen & kNumber;
-  vec3 way = open.way;
-  vec4 a = corner_of(u_triangles, number - 1u, 0), b = corner_of(u_triangles, number - 1u, 1), c = corner_of(u_triangles, number - 1u, 2);
-  vec3 ab = b.xyz - a.xyz, ac = c.xyz - a.xyz, from_a = p.position - a.xyz;
-  vec3 across = cross(way, ac), turned = cross(from_a, ab);
-  float volume = dot(ab, across), part = 1.0 / volume;
-  float v_of_b = dot(from_a, across) * part, v_of_c = dot(way, turned) * part;
-  float t = dot(ac, turned) * part;
-  float v_of_a = 1.0 - v_of_b - v_of_c;
-  // Rays along a shared edge must not slip through: rounding.
-  const float kSeam = 1e-5;
-  float least = min(v_of_a, min(v_of_b, v_of_c));
-  bool is_before = t > 0.0 && (KIND == 2 || t < 1.0);
-  if (is_before && least >= -kSeam) return true;
-  if (open.steps == 0 && seen == open.nearest) {
-    // A triangle that is more slender than a texel stands for all that is like it around: it stops
-    // what goes through its texel, and so does one with holes.
-    vec3 bc = ac - ab, doubled_area = cross(ab, ac);
-    float longest = max(dot(ab, ab), max(dot(ac, ac), dot(bc, bc)));
-    float texel = 0.25 * open.reach;
-    bool is_slender = dot(doubled_area, doubled_area) < texel * texel * longest;
-    float slope = dot(way, way) / max(dot(p.geometric, way), 1e-6);
-    bool is_far = -dot(from_a, way) > open.reach * slope;
-    if (is_far && (is_slender || (seen & kHoles) != 0u)) return true;
-  }
-  bool may_step = is_before && open.steps < kMostSteps && volume != 0.0 && (seen & kHoles) == 0u;
-  if (!may_step) return false;
-  // Folded back under the last one: the ray passes by the rim of the mesh.
-  float to_last = open.last == uint(a.w) ? v_of_c : open.last == uint(b.w) ? v_of_a : v_of_b;
-  if (open.steps > 0 && to_last < 0.0) return false;
-  open.next = uint(least == v_of_a ? b.w : least == v_of_b ? c.w : a.w);
-  open.last = number;
-  return false;
-}
-
-uint lowest(uint bits) { return bits & (~bits + 1u); }
-
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   uvec4 bytes = uvec4(texelFetch(u_mask, at, 0) * 255.0 + 0.5);
   uint asked = bytes.r | (bytes.g << 8) | (bytes.b << 16) | (bytes.a << 24);
   uvec2 told = texelFetch(u_told, at / kTile, 0).xy & asked;
-  uint seen = told.x, unknown = told.y, open_ones = 0u;
-  if (unknown != 0u) {
-    Receiver p;
-    p.position = uintBitsToFloat(texelFetch(u_points, at, 0).xyz);
-    p.geometric = unpack_unit(texelFetch(u_reflectances, at, 0).w);
-    p.owner = texelFetch(u_owners, at, 0).xyz;
-    while (unknown != 0u) {
-      uint bit = lowest(unknown);
-      int answer = look_up(number_of(bit), p);
-      if (answer == kSeen) seen |= bit;
-      if (answer == kOpen) open_ones |= bit;
-      unknown ^= bit;
-    }
-    // One ray against one triangle a turn, so that pixels that have more to do do not hold up others
-    // at every light.
-    Question open;
-    bool is_new = true;
-    while (open_ones != 0u) {
-      uint bit = lowest(open_ones);
-      if (is_new) open = question_for(number_of(bit), p);
-      bool shadowed = !is_answered(open) && is_in_way(open, p);
-      is_new = shadowed || is_answered(open);
-      if (!is_new) continue;
-      if (!shadowed) seen |= bit;
-      open_ones ^= bit;
-    }
+  uint seen = told.x, unknown = told.y, open = 0u;
+  Receiver p = receiver_at(at);
+  // Mesa runs what is in a loop once more than `while` says.
+  for (;;) {
+    uint bit = lowest(unknown);
+    int answer = look_up(number_of(bit), p);
+    if (answer == kSeen) seen |= bit;
+    if (answer == kOpen) open |= bit;
+    unknown ^= bit;
+    if (unknown == 0u) break;
   }
-  o_mask = vec4(uvec4(seen, seen >> 8, seen >> 16, seen >> 24) & 255u) / 255.0;
+  o_mask = bytes_of(seen);
+  o_left = uvec4(seen, open, 0u, 0u);
+  gl_FragDepth = open != 0u ? 1.0 : 0.0;
 }

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: MIT
-// What maps tell of all points of a tile at once: bit i of two masks for light i.
+// What maps tell of all points of a tile at once, or with GROUPS of a group of tiles: bit i of two
+// masks for light i.
 #include "shaders/map_tiles.glsl"
 #include "shaders/shadow_maps.glsl"
+#include "shaders/triangles.glsl"
 
 uniform highp usampler2D u_spheres;  // see shaders/map_tiles.frag.glsl
 uniform highp usampler2D u_normals;
-uniform highp usampler2D u_map_cells;
-uniform int u_count;
+uniform highp usampler2D u_map_blocks;  // see shaders/shadow_map.glsl
+#if GROUPS
+uniform int u_count;  // of lights
+#else
+uniform highp usampler2D u_told;  // of groups
+#endif
 
 layout(location = 0) out uvec4 o_told;  // seen by all points that face it; each point must ask
 
@@ -14,17 +20,30 @@ const int kShadowed = 0;
 const int kSeen = 1;
 const int kOpen = 2;
 
-// So many texels around a point blocks are asked one by one, and so many cells.
-const float kFine = 2.0, kFurthest = 4.0;
-
-/// How far the nearest that some blocks see is that is not of the tile's patch, and the furthest.
+/// How far the nearest that some windows see is that is not of the tile's patch, and the furthest.
 struct Sees {
   float near, far;
 };
 
-void add(uvec2 block, uint own, inout Sees sees) {
-  sees.near = min(sees.near, block.x == own || block.x == 0u ? near_of(block.y) : 0.0);
-  sees.far = max(sees.far, far_of(block.y));
+void add(uvec2 window, uint own, inout Sees sees) {
+  sees.near = min(sees.near, window.x == own || window.x == 0u ? near_of(window.y) : 0.0);
+  sees.far = max(sees.far, far_of(window.y));
+}
+
+/// What the texels from one to another see, by two windows a side of a level where that suffices.
+Sees look(int light, ivec2 low, ivec2 high, int level, uint own) {
+  ivec2 first = min(low >> level, (u_map_size >> level) - 2);
+  ivec2 last = max(first, (high >> level) - 1);
+  ivec2 corner = corner_of_level(level, ivec2(u_map_size * kMapsAcross, textureSize(u_map_blocks, 0).y)) +
+                 (corner_of_map(light) >> level);
+  first += corner;
+  last += corner;
+  Sees sees = Sees(uintBitsToFloat(kInfinitelyFar << 16), 0.0);
+  add(texelFetch(u_map_blocks, first, 0).xy, own, sees);
+  add(texelFetch(u_map_blocks, last, 0).xy, own, sees);
+  add(texelFetch(u_map_blocks, ivec2(first.x, last.y), 0).xy, own, sees);
+  add(texelFetch(u_map_blocks, ivec2(last.x, first.y), 0).xy, own, sees);
+  return sees;
 }
 
 int told(int light, vec4 sphere, vec3 normal, float spread, float thickness, uint own) {
@@ -43,41 +62,30 @@ int told(int light, vec4 sphere, vec3 normal, float spread, float thickness, uin
   vec2 reach = sphere.w * float(u_map_size) * 0.5 * vec2(length(map.x.xyz), length(map.y.xyz));
 #else
 #if KIND == 0
-  if (at.height * at.depth + sphere.w <= 0.0) return kShadowed;
+  // How far points reach over the light's plane. What gives less than a millionth of what it could
+  // from there lies in one plane with the tile.
+  vec3 axis = (light & 1) != 0 ? -map.z.xyz : map.z.xyz;
+  float over = at.height * at.depth + length(cross(axis, normal)) * sphere.w + thickness;
+  if (over <= 0.0 || (cosine + slack) * over < 1e-6 * dot(way, way)) return kShadowed;
 #endif
   if (at.depth < 2.0 * most) return kOpen;
   // Coordinates over depth change by up to sqrt(2) over depth.
   float part = sqrt(2.0) * sphere.w / (at.depth - most);
   vec2 reach = vec2(0.5 * float(u_map_size) * part);
+#endif
+  ivec2 low = block_of(at.texel - reach), high = block_of(at.texel + reach) + 1;
+  if (is_at_border(low, high - 1)) return kOpen;
+  // Two windows of two steps each, wherever the first of them begins, go three steps further.
+  int steps = max(high.x - low.x, high.y - low.y);
+  if (steps > 3 << (kMapLevels - 1)) return kOpen;
+  int level = max(exponent_of(0.3333 * float(steps)) + 1, 0);
 #if KIND == 0
   // Of this light's half.
-  if (at.height < 2.0 * part + 8.0 / float(u_map_size)) return kOpen;
+  if (at.height < 2.0 * part + float(4 + (4 << level)) / float(u_map_size)) return kOpen;
 #endif
-#endif
-  float texels = max(reach.x, reach.y);
-  if (texels > kFurthest) return kOpen;
-  ivec2 low = block_of(at.texel - reach), high = block_of(at.texel + reach);
-  if (is_at_border(low, high)) return kOpen;
-  ivec2 corner = corner_of_map(light);
-  Sees sees = Sees(uintBitsToFloat(kInfinitelyFar << 16), 0.0);
-  if (texels <= kFine) {
-    // Blocks are two texels wide.
-    for (int y = low.y; y <= high.y + 1; y += 2) {
-      for (int x = low.x; x <= high.x + 1; x += 2) {
-        ivec2 block = corner + min(ivec2(x, y), high);
-        add(texelFetch(u_map_blocks, block, 0).xy, own, sees);
-      }
-    }
-  } else {
-    low = (corner + low) / kCell, high = (corner + high) / kCell;
-    for (int y = low.y; y <= high.y; ++y) {
-      for (int x = low.x; x <= high.x; ++x) {
-        add(texelFetch(u_map_cells, ivec2(x, y), 0).xy, own, sees);
-      }
-    }
-  }
+  Sees sees = look(light, low, high, level, own);
   if (sees.near > at.depth + most) return kSeen;
-  float before = at.depth - most - sees.far, own_reach = (1.0 + texels) * at.reach * at.scale;
+  float before = at.depth - most - sees.far, own_reach = (1.0 + max(reach.x, reach.y)) * at.reach * at.scale;
   if (before * max(cosine - slack, 0.0) > own_reach) return kShadowed;
   return kOpen;
 }
@@ -90,11 +98,19 @@ void main() {
   uvec4 normals = texelFetch(u_normals, tile, 0);
   vec3 normal = unpack_unit(normals.x);
   vec2 off = uintBitsToFloat(normals.yz);
-  uint seen = 0u, open = 0u;
-  for (int i = 0; i < u_count; ++i) {
-    int answer = told(i, sphere, normal, off.x, off.y, normals.w);
-    if (answer == kSeen) seen |= 1u << uint(i);
-    if (answer == kOpen) open |= 1u << uint(i);
-  }
+#if GROUPS
+  uint seen = 0u, unknown = 0xffffffffu >> uint(32 - u_count);
+#else
+  uvec2 before = texelFetch(u_told, tile / kTilesInGroup, 0).xy;
+  uint seen = before.x, unknown = before.y;
+#endif
+  uint open = 0u;
+  do {
+    uint bit = lowest(unknown);
+    int answer = told(number_of(bit), sphere, normal, off.x, off.y, normals.w);
+    if (answer == kSeen) seen |= bit;
+    if (answer == kOpen) open |= bit;
+    unknown ^= bit;
+  } while (unknown != 0u);
   o_told = uvec4(seen, open, 0u, 0u);
 }

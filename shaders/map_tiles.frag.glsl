@@ -27,7 +27,7 @@ void main() {
       vec3 position = uintBitsToFloat(texelFetch(u_points, at, 0).xyz);
       uint its_patch = texelFetch(u_owners, at, 0).z;
       if (common_patch == 0u) common_patch = its_patch;
-      is_common = is_common && its_patch == common_patch;
+      is_common = is_common && its_patch != 0u && its_patch == common_patch;
       low = min(low, position);
       high = max(high, position);
       normals += unpack_unit(texelFetch(u_reflectances, at, 0).w);

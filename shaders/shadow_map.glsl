@@ -22,7 +22,14 @@ const uint kHoles = 0x10000000u;
 const uint kInfinitelyFar = 0x7f00u;
 const uint kNoPatch = 0xffffffffu;  // of what has holes, and of several
 
-const int kCell = 4;  // blocks a side of a cell, of which the same is known
+// The same of larger windows: those of level n are 2 << n texels wide and begin at every (1 << n)th;
+// they stand beside the blocks, which are level 0, one below the other.
+const int kMapLevels = 5;
+
+ivec2 corner_of_level(int level, ivec2 size_of_blocks) {
+  return level == 0 ? ivec2(0)
+                    : ivec2(size_of_blocks.x, size_of_blocks.y - (size_of_blocks.y >> (level - 1)));
+}
 
 float near_of(uint depths) { return uintBitsToFloat(depths & 0xffff0000u); }
 float far_of(uint depths) { return uintBitsToFloat(depths << 16); }

@@ -5,7 +5,6 @@
 
 // A row for each light. Mesa looks textures up faster than uniform blocks.
 uniform highp sampler2D u_map_frames;
-uniform highp usampler2D u_map_blocks;  // see shaders/shadow_map.glsl
 
 const int kMapsAcross = 4;
 

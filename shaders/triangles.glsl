@@ -2,8 +2,12 @@
 // Texels row by row, as in the textures of triangle_texture.h, whose widths are powers of two: Mesa
 // takes long to divide integers.
 
+/// Of positive numbers.
+int exponent_of(float number) { return int(floatBitsToUint(number) >> 23) - 127; }
+
+uint lowest(uint bits) { return bits & (~bits + 1u); }
 /// The number of a bit.
-int number_of(uint bit) { return int(floatBitsToUint(float(bit)) >> 23) - 127; }
+int number_of(uint bit) { return exponent_of(float(bit)); }
 
 ivec2 texel_number(int i, int width) { return ivec2(i & (width - 1), i >> number_of(uint(width))); }
 

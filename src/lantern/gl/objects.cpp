@@ -154,9 +154,8 @@ Framebuffer::Framebuffer(std::initializer_list<const Texture*> colours, const Te
   glBindFramebuffer(GL_FRAMEBUFFER, handle_.id());
   std::vector<GLenum> targets;
   const auto attach = [&](GLenum attachment, const Texture& texture) {
-    assert(width_ == 0 || (width_ == texture.width() && height_ == texture.height()));
-    width_ = texture.width();
-    height_ = texture.height();
+    width_ = width_ == 0 ? texture.width() : std::min(width_, texture.width());
+    height_ = height_ == 0 ? texture.height() : std::min(height_, texture.height());
     glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture.id(), 0);
   };
   for (const Texture* colour : colours) {

@@ -116,7 +116,8 @@ class Texture {
   int width_, height_, levels_;
 };
 
-/// Draws into textures: colours at locations 0, 1, ..., and a depth. They must outlive it.
+/// Draws into textures: colours at locations 0, 1, ..., and a depth, as far from their first texels
+/// as all of them reach. They must outlive it.
 class Framebuffer {
  public:
   explicit Framebuffer(std::initializer_list<const Texture*> colours,

@@ -2,6 +2,7 @@
 #include "lantern/raster/map_masks.h"
 
 #include "lantern/gl/check.h"
+#include "lantern/raster/draw_state.h"
 
 #include <bit>
 #include <string>
@@ -10,36 +11,48 @@
 namespace lantern {
 namespace {
 
-constexpr int kTile = 4;  // as in shaders/map_tiles.glsl
+// As in shaders/map_tiles.glsl.
+constexpr int kTile = 4, kGroup = 4 * kTile;
 
-int tiles(int pixels) { return (pixels + kTile - 1) / kTile; }
+int tiles(int pixels, int tile) { return (pixels + tile - 1) / tile; }
 
-gl::Program program_of(const gl::ShaderFiles& files, const char* fragment, LightFormula formula) {
-  return gl::Program(files, "shaders/full_screen.vert.glsl", fragment,
-                     {{"KIND", std::to_string(static_cast<int>(formula))}});
+gl::Program program_of(const gl::ShaderFiles& files, const char* fragment, LightFormula formula,
+                       std::vector<gl::Definition> definitions = {}) {
+  definitions.push_back({"KIND", std::to_string(static_cast<int>(formula))});
+  return gl::Program(files, "shaders/full_screen.vert.glsl", fragment, definitions);
 }
 
 }  // namespace
 
 MapMasks::Programs::Programs(const gl::ShaderFiles& files, LightFormula formula)
-    : of_tiles(program_of(files, "shaders/map_tile_masks.frag.glsl", formula)),
-      of_pixels(program_of(files, "shaders/map_masks.frag.glsl", formula)) {}
+    : of_groups(program_of(files, "shaders/map_tile_masks.frag.glsl", formula, {{"GROUPS", "1"}})),
+      of_tiles(program_of(files, "shaders/map_tile_masks.frag.glsl", formula, {{"GROUPS", "0"}})),
+      of_pixels(program_of(files, "shaders/map_masks.frag.glsl", formula)),
+      by_rays(program_of(files, "shaders/map_rays.frag.glsl", formula)) {}
+
+MapMasks::Tiles::Tiles(int width, int height)
+    : spheres(gl::Format::kRgba32ui, width, height),
+      normals(gl::Format::kRgba32ui, width, height),
+      told(gl::Format::kRg32ui, width, height),
+      framebuffer({&spheres, &normals}),
+      told_framebuffer({&told}) {}
 
 MapMasks::MapMasks(ShadowMaps& maps, const gl::ShaderFiles& files, int width, int height)
     : maps_(maps),
       owners_(files, "shaders/full_screen.vert.glsl", "shaders/map_owners.frag.glsl"),
-      tiles_(files, "shaders/full_screen.vert.glsl", "shaders/map_tiles.frag.glsl"),
+      of_tiles_(files, "shaders/full_screen.vert.glsl", "shaders/map_tiles.frag.glsl"),
+      of_groups_(files, "shaders/full_screen.vert.glsl", "shaders/map_tile_groups.frag.glsl"),
       programs_{Programs(files, LightFormula::kSurface), Programs(files, LightFormula::kPunctual),
                 Programs(files, LightFormula::kDirectional)},
+      groups_(tiles(width, kGroup), tiles(height, kGroup)),
+      tiles_(tiles(width, kTile), tiles(height, kTile)),
       owner_(gl::Format::kRgba32ui, width, height),
-      spheres_(gl::Format::kRgba32ui, tiles(width), tiles(height)),
-      normals_(gl::Format::kRgba32ui, tiles(width), tiles(height)),
-      told_(gl::Format::kRg32ui, tiles(width), tiles(height)),
       mask_(gl::Format::kRgba8, width, height),
+      left_(gl::Format::kRg32ui, width, height),
+      is_left_(gl::Format::kDepth32f, width, height),
       owner_framebuffer_({&owner_}),
-      tile_framebuffer_({&spheres_, &normals_}),
-      told_framebuffer_({&told_}),
-      mask_framebuffer_({&mask_}) {}
+      look_up_framebuffer_({&mask_, &left_}, &is_left_),
+      ray_framebuffer_({&mask_}, &is_left_) {}
 
 void MapMasks::look_at(const GBuffer& g_buffer) {
   owners_.set("u_emissions", 0, g_buffer.emissions);
@@ -48,18 +61,22 @@ void MapMasks::look_at(const GBuffer& g_buffer) {
   owners_.set("u_triangles", 3, maps_.triangles().corners);
   owner_framebuffer_.bind();
   gl::draw_full_screen(no_vertices_);
-  tiles_.set("u_points", 0, g_buffer.points);
-  tiles_.set("u_reflectances", 1, g_buffer.reflectances);
-  tiles_.set("u_owners", 2, owner_);
-  tiles_.set("u_emissions", 3, g_buffer.emissions);
-  tile_framebuffer_.bind();
+  of_tiles_.set("u_points", 0, g_buffer.points);
+  of_tiles_.set("u_reflectances", 1, g_buffer.reflectances);
+  of_tiles_.set("u_owners", 2, owner_);
+  of_tiles_.set("u_emissions", 3, g_buffer.emissions);
+  tiles_.framebuffer.bind();
+  gl::draw_full_screen(no_vertices_);
+  of_groups_.set("u_spheres", 0, tiles_.spheres);
+  of_groups_.set("u_normals", 1, tiles_.normals);
+  groups_.framebuffer.bind();
   gl::draw_full_screen(no_vertices_);
   gl::check("drawing what encloses tiles");
   receivers_.reset();
 }
 
 Bounds MapMasks::bounds_of_tiles() const {
-  const std::vector<std::uint32_t> spheres = tile_framebuffer_.read<std::uint32_t>(0);
+  const std::vector<std::uint32_t> spheres = tiles_.framebuffer.read<std::uint32_t>(0);
   Bounds bounds;
   for (std::size_t i = 0; i < spheres.size(); i += 4) {
     const auto word = [&](std::size_t k) { return std::bit_cast<float>(spheres[i + k]); };
@@ -72,6 +89,15 @@ Bounds MapMasks::bounds_of_tiles() const {
   return bounds;
 }
 
+void MapMasks::ask(const gl::Program& program, const Tiles& tiles) {
+  program.set("u_spheres", 0, tiles.spheres);
+  program.set("u_normals", 1, tiles.normals);
+  maps_.set_in(program, 2);
+  program.set("u_map_blocks", 3, maps_.blocks());
+  tiles.told_framebuffer.bind();
+  gl::draw_full_screen(no_vertices_);
+}
+
 const gl::Texture& MapMasks::draw(const LightGroup& group, const GBuffer& g_buffer,
                                   const gl::Texture& asked, StageTimes& times) {
   // Only maps from infinity show what is looked at alone; to read it back takes waiting for the
@@ -80,24 +106,34 @@ const gl::Texture& MapMasks::draw(const LightGroup& group, const GBuffer& g_buff
   maps_.draw(group, receivers_.value_or(Bounds{}), times);
   times.begin(Stage::kMaps);
   const Programs& programs = programs_[static_cast<std::size_t>(group.formula)];
-  programs.of_tiles.set("u_spheres", 0, spheres_);
-  programs.of_tiles.set("u_normals", 1, normals_);
-  programs.of_tiles.set("u_count", static_cast<int>(group.records.size()));
-  maps_.set_in(programs.of_tiles, 2);
-  programs.of_tiles.set("u_map_cells", 4, maps_.cells());
-  told_framebuffer_.bind();
+  programs.of_groups.set("u_count", static_cast<int>(group.records.size()));
+  ask(programs.of_groups, groups_);
+  programs.of_tiles.set("u_told", 4, groups_.told);
+  ask(programs.of_tiles, tiles_);
+
+  const auto set_points = [&](const gl::Program& program) {
+    program.set("u_points", 0, g_buffer.points);
+    program.set("u_reflectances", 1, g_buffer.reflectances);
+    program.set("u_owners", 2, owner_);
+    maps_.set_in(program, 3);
+  };
+  set_points(programs.of_pixels);
+  programs.of_pixels.set("u_map_blocks", 4, maps_.blocks());
+  programs.of_pixels.set("u_told", 5, tiles_.told);
+  programs.of_pixels.set("u_mask", 6, asked);
+  look_up_framebuffer_.bind();
+  // The depth says where rays are left to ask.
+  apply({.depth = DepthUse::kReplace}, View{});
   gl::draw_full_screen(no_vertices_);
 
-  programs.of_pixels.set("u_points", 0, g_buffer.points);
-  programs.of_pixels.set("u_reflectances", 1, g_buffer.reflectances);
-  programs.of_pixels.set("u_owners", 2, owner_);
-  programs.of_pixels.set("u_told", 3, told_);
-  programs.of_pixels.set("u_mask", 4, asked);
-  maps_.set_in(programs.of_pixels, 5);
-  programs.of_pixels.set("u_map_numbers", 7, maps_.numbers());
-  programs.of_pixels.set("u_triangles", 8, maps_.triangles().corners);
-  mask_framebuffer_.bind();
+  set_points(programs.by_rays);
+  programs.by_rays.set("u_left", 4, left_);
+  programs.by_rays.set("u_map_numbers", 5, maps_.numbers());
+  programs.by_rays.set("u_triangles", 6, maps_.triangles().corners);
+  ray_framebuffer_.bind();
+  apply({.depth = DepthUse::kTest}, View{});
   gl::draw_full_screen(no_vertices_);
+  reset_draw_state();
   times.end();
   gl::check("asking maps");
   return mask_;

@@ -29,17 +29,26 @@ class MapMasks {
 
  private:
   struct Programs {
-    gl::Program of_tiles, of_pixels;
+    gl::Program of_groups, of_tiles, of_pixels, by_rays;
     Programs(const gl::ShaderFiles& files, LightFormula formula);
   };
 
+  /// What is known of some tiles: what encloses them, and what maps told of them last.
+  struct Tiles {
+    gl::Texture spheres, normals, told;
+    gl::Framebuffer framebuffer, told_framebuffer;
+    Tiles(int width, int height);
+  };
+
   Bounds bounds_of_tiles() const;
+  void ask(const gl::Program& program, const Tiles& tiles);
 
   ShadowMaps& maps_;
-  gl::Program owners_, tiles_;
+  gl::Program owners_, of_tiles_, of_groups_;
   std::array<Programs, kLightFormulas> programs_;
-  gl::Texture owner_, spheres_, normals_, told_, mask_;
-  gl::Framebuffer owner_framebuffer_, tile_framebuffer_, told_framebuffer_, mask_framebuffer_;
+  Tiles groups_, tiles_;
+  gl::Texture owner_, mask_, left_, is_left_;
+  gl::Framebuffer owner_framebuffer_, look_up_framebuffer_, ray_framebuffer_;
   std::optional<Bounds> receivers_;  // once they are asked for
   gl::VertexArray no_vertices_;
 };

@@ -18,9 +18,10 @@
 namespace lantern {
 namespace {
 
-constexpr std::size_t kTexelBytes = 3 * sizeof(std::uint32_t);
+// A number, what a block sees and, in half as many texels again, windows.
+constexpr std::size_t kTexelBytes = 4 * sizeof(std::uint32_t);
 constexpr int kMapsAcross = 4;  // as in shaders/shadow_maps.glsl
-constexpr int kCell = 4;        // as in shaders/shadow_map.glsl
+constexpr int kMapLevels = 5;   // as in shaders/shadow_map.glsl
 
 constexpr GLuint kPosition = 0, kNumber = 1, kPatch = 2, kTexcoord = 3, kColour = 4;
 
@@ -96,8 +97,8 @@ ShadowMaps::Casters ShadowMaps::casters_of(const Scene& scene, const World& worl
 }
 
 std::size_t ShadowMaps::Maps::bytes() const {
-  return kTexelBytes * static_cast<std::size_t>(blocks.width()) *
-         static_cast<std::size_t>(blocks.height());
+  return kTexelBytes * static_cast<std::size_t>(numbers.width()) *
+         static_cast<std::size_t>(numbers.height());
 }
 
 ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& surfaces,
@@ -109,7 +110,7 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
       solid_(caster_program(files, false)),
       with_holes_(caster_program(files, true)),
       blocks_(files, "shaders/full_screen.vert.glsl", "shaders/shadow_map_blocks.frag.glsl"),
-      cells_(files, "shaders/full_screen.vert.glsl", "shaders/shadow_map_cells.frag.glsl"),
+      windows_(files, "shaders/full_screen.vert.glsl", "shaders/shadow_map_windows.frag.glsl"),
       casters_(casters_of(scene, world, options.casters)),
       indices_(std::span<const std::uint32_t>()),
       array_({}, &indices_) {
@@ -185,8 +186,8 @@ void ShadowMaps::draw(const LightGroup& group, const Bounds& receivers, StageTim
   std::vector<MapFrame> frames = map_frames(group, {.scene = bounds_, .receivers = box}, size);
   gl::Texture frame_texels = frame_texture(frames);
   kept_.push_back({group.formula, group.records, group.points, box, std::move(frames),
-                   std::move(frame_texels), gl::Texture(gl::Format::kRg32ui, width, height),
-                   gl::Texture(gl::Format::kRg32ui, width / kCell, height / kCell),
+                   std::move(frame_texels),
+                   gl::Texture(gl::Format::kRg32ui, width + width / 2, height),
                    gl::Texture(gl::Format::kR32ui, width, height)});
   times.begin(Stage::kMaps);
   draw(kept_.back());
@@ -219,11 +220,27 @@ void ShadowMaps::draw(const Maps& maps) {
     gl::draw_full_screen(no_vertices_);
   }
   drawn_ += maps.frames.size();
-  const gl::Framebuffer coarse({&maps.cells});
-  coarse.bind();
-  cells_.set("u_blocks", 0, maps.blocks);
-  gl::draw_full_screen(no_vertices_);
+  draw_windows(maps);
   gl::check("drawing shadow maps");
+}
+
+/// Each level by the one before, and from there to its place beside the blocks.
+void ShadowMaps::draw_windows(const Maps& maps) {
+  std::optional<gl::Texture> before;
+  int width = maps.numbers.width(), height = maps.numbers.height(), y = 0;
+  for (int level = 1; level < kMapLevels; ++level) {
+    width /= 2, height /= 2;
+    gl::Texture windows(gl::Format::kRg32ui, width, height);
+    const gl::Framebuffer framebuffer({&windows});
+    framebuffer.bind();
+    windows_.set("u_windows", 0, before ? *before : maps.blocks);
+    gl::draw_full_screen(no_vertices_);
+    maps.blocks.bind(0);
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, maps.numbers.width(), y, 0, 0, width, height);
+    y += height;
+    before = std::move(windows);
+  }
 }
 
 void ShadowMaps::draw_light(const Maps& maps, std::size_t light) {
@@ -281,7 +298,6 @@ void ShadowMaps::set_in(const gl::Program& program, int unit) const {
   const Maps& maps = kept_.back();
   program.set("u_map_size", size_of(maps.formula));
   program.set("u_map_frames", unit, maps.frame_texels);
-  program.set("u_map_blocks", unit + 1, maps.blocks);
 }
 
 }  // namespace lantern

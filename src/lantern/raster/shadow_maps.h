@@ -47,11 +47,11 @@ class ShadowMaps {
   /// Draws the group's maps unless they are there still. Those from infinity show the box of a grid
   /// around the points that will ask, `receivers`.
   void draw(const LightGroup& group, const Bounds& receivers, StageTimes& times);
-  /// What shaders/shadow_maps.glsl takes of the group that was drawn last, on two texture units
-  /// from `unit` on.
+  /// What shaders/shadow_maps.glsl takes of the group that was drawn last.
   void set_in(const gl::Program& program, int unit) const;
-  /// The same of coarse cells, and the numbers of the triangles that texels see.
-  const gl::Texture& cells() const { return kept_.back().cells; }
+  /// What its blocks and windows see (see shaders/shadow_map.glsl), and the numbers of the
+  /// triangles that texels see.
+  const gl::Texture& blocks() const { return kept_.back().blocks; }
   const gl::Texture& numbers() const { return kept_.back().numbers; }
   const TriangleTextures& triangles() const { return triangles_; }
 
@@ -65,7 +65,7 @@ class ShadowMaps {
     std::vector<LightPoint> points;
     Bounds receivers;
     std::vector<MapFrame> frames;
-    gl::Texture frame_texels, blocks, cells, numbers;
+    gl::Texture frame_texels, blocks, numbers;
     std::size_t bytes() const;
   };
 
@@ -93,13 +93,14 @@ class ShadowMaps {
   static bool are_of(const Maps& maps, const LightGroup& group);
   void make_room(std::size_t bytes);
   void draw(const Maps& maps);
+  void draw_windows(const Maps& maps);
   void draw_light(const Maps& maps, std::size_t light);
 
   TriangleTextures triangles_;
   Bounds bounds_;
   ShadowMapOptions options_;
   const Surfaces& surfaces_;
-  gl::Program solid_, with_holes_, blocks_, cells_;
+  gl::Program solid_, with_holes_, blocks_, windows_;
   Casters casters_;
   std::vector<gl::Buffer> attributes_;
   gl::Buffer indices_;
