@@ -23,7 +23,7 @@ int look_up(int light, Receiver p) {
   vec3 way = way_to(map, p.position);
   float cosine = dot(p.geometric, way);
   if (cosine <= 0.0) return kShadowed;
-  MapPoint at = find_in_map(light, map, p.position, way);
+  MapPoint at = find_in_map(map, p.position, way);
 #if KIND == 0
   if (at.height <= 0.0) return kShadowed;
 #endif

@@ -45,7 +45,7 @@ Question question_for(int light, Receiver p) {
   LightMap map = map_of(light);
   Question asked;
   asked.way = way_to(map, p.position);
-  MapPoint at = find_in_map(light, map, p.position, asked.way);
+  MapPoint at = find_in_map(map, p.position, asked.way);
   asked.reach = at.reach;
   ivec2 first = block_of(at.texel), corner = corner_of_map(light);
   ivec2 off = ivec2(floor(at.texel)) - first;

@@ -57,21 +57,28 @@ int told(int light, vec4 sphere, vec3 normal, float spread, float thickness, uin
   float slack = thickness + spread * (length(way) + sphere.w), most = sqrt(3.0) * sphere.w;
 #endif
   if (cosine + slack <= 0.0) return kShadowed;
-  MapPoint at = find_in_map(light, map, sphere.xyz, way);
+  MapPoint at = find_in_map(map, sphere.xyz, way);
 #if KIND == 2
   vec2 reach = sphere.w * float(u_map_size) * 0.5 * vec2(length(map.x.xyz), length(map.y.xyz));
 #else
 #if KIND == 0
   // How far points reach over the light's plane. What gives less than a millionth of what it could
   // from there lies in one plane with the tile.
-  vec3 axis = (light & 1) != 0 ? -map.z.xyz : map.z.xyz;
-  float over = at.height * at.depth + length(cross(axis, normal)) * sphere.w + thickness;
+  float over = at.height + length(cross(map.z.xyz, normal)) * sphere.w + thickness;
   if (over <= 0.0 || (cosine + slack) * over < 1e-6 * dot(way, way)) return kShadowed;
 #endif
   if (at.depth < 2.0 * most) return kOpen;
-  // Coordinates over depth change by up to sqrt(2) over depth.
-  float part = sqrt(2.0) * sphere.w / (at.depth - most);
-  vec2 reach = vec2(0.5 * float(u_map_size) * part);
+  float part = sphere.w / (at.depth - most);
+#if KIND == 0
+  // By so much the lesser of the coordinates over depth changes, where all of the sphere has less
+  // than this; the larger one changes by sqrt(2) at most.
+  vec2 off = abs(2.0 * at.texel / float(u_map_size) - 1.0);
+  float lesser = min(off.x, off.y) + 2.3 * part;
+  float change = sqrt(2.0 + 3.0 * lesser * lesser);
+#else
+  float change = sqrt(2.0);
+#endif
+  vec2 reach = vec2(0.5 * float(u_map_size) * change * part);
 #endif
   ivec2 low = block_of(at.texel - reach), high = block_of(at.texel + reach) + 1;
   if (is_at_border(low, high - 1)) return kOpen;
@@ -79,10 +86,6 @@ int told(int light, vec4 sphere, vec3 normal, float spread, float thickness, uin
   int steps = max(high.x - low.x, high.y - low.y);
   if (steps > 3 << (kMapLevels - 1)) return kOpen;
   int level = max(exponent_of(0.3333 * float(steps)) + 1, 0);
-#if KIND == 0
-  // Of this light's half.
-  if (at.height < 2.0 * part + float(4 + (4 << level)) / float(u_map_size)) return kOpen;
-#endif
   Sees sees = look(light, low, high, level, own);
   if (sees.near > at.depth + most) return kSeen;
   float before = at.depth - most - sees.far, own_reach = (1.0 + max(reach.x, reach.y)) * at.reach * at.scale;

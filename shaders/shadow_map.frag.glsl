@@ -11,13 +11,13 @@ in float v_depth;
 flat in uint v_triangle;
 flat in uint v_patch;
 
-uniform int u_side;  // 1: inside the diamond alone, -1: outside, 0: all of the map
-uniform int u_on;    // and, if 0, on it
+uniform vec3 u_edges[2];  // the face's; see MapFace
 
 layout(location = 0) out uvec4 o_texel;
 
 void main() {
-  if (u_side * off_diamond(ivec2(gl_FragCoord.xy)) > u_on) discard;
+  vec3 off = vec3(off_centre(ivec2(gl_FragCoord.xy)), u_map_size);
+  if (min(dot(u_edges[0], off), dot(u_edges[1], off)) < 0.0) discard;
   uint number = v_triangle + 1u;
 #if HOLES
   if (is_hole(v_triangle, ivec2(gl_FragCoord.xy), v_texcoord, v_alpha)) discard;

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A shadow map is a square of u_map_size texels a side, a power of two. Directions unfold into it
-// as an octahedron does, whose faces are perspective pictures each: what is straight stays straight.
-// The hemisphere around the frame's z lies inside the diamond, the other one outside, so that two
-// lights that shine to one side share a map.
+// A shadow map is a square of u_map_size texels a side. All directions unfold into it as an octahedron
+// does, those of a light that shines to one side as one half of it, turned by an eighth. Each face is
+// a perspective picture: what is straight stays straight.
 uniform int u_map_size;
 
-/// Less than 0 inside the diamond, more outside, 0 on it.
-int off_diamond(ivec2 texel) {
-  ivec2 off_centre = abs(2 * texel + 1 - u_map_size);
-  return off_centre.x + off_centre.y - u_map_size;
-}
+/// Of a texel's centre, twice.
+ivec2 off_centre(ivec2 texel) { return 2 * texel + 1 - u_map_size; }
 
 // What a texel sees: the number of a triangle and 1, or 0. What a triangle with holes stops is known
 // for each texel alone.

@@ -3,19 +3,17 @@
 #include "shaders/shadow_map.glsl"
 
 uniform highp usampler2D u_texels;  // of this map alone
-uniform bool u_halves;  // two lights a map
+uniform ivec2 u_first;  // where it will be
 
 layout(location = 0) out uvec4 o_block;
 layout(location = 1) out uvec4 o_number;
 
 void main() {
-  ivec2 in_map = ivec2(gl_FragCoord.xy) & (u_map_size - 1);
-  int side = off_diamond(in_map);
+  ivec2 in_map = ivec2(gl_FragCoord.xy) - u_first;
   uvec3 seen[4];  // number, depth, patch
   for (int i = 0; i < 4; ++i) {
     ivec2 texel = min(in_map + ivec2(i & 1, i >> 1), ivec2(u_map_size - 1));
     seen[i] = texelFetch(u_texels, texel, 0).xyz;
-    if (u_halves && side * off_diamond(texel) <= 0) seen[i] = seen[0];
     if (seen[i].x == 0u) seen[i].yz = uvec2(kInfinitelyFar << 16, 0u);
   }
   uint nearest = seen[0].y, far = 0u, first = seen[0].z;

@@ -33,10 +33,10 @@ struct MapPoint {
   float depth;   // as the map has it
   float reach;   // how far apart what the four texels around see is here, if it faces the light
   float scale;   // how many times as long as a depth of 1 the way to the light is
-  float height;  // over the plane of a light that shines to one side, in parts of the depth
+  float height;  // over the plane of a light that shines to one side
 };
 
-MapPoint find_in_map(int light, LightMap map, vec3 position, vec3 way) {
+MapPoint find_in_map(LightMap map, vec3 position, vec3 way) {
   MapPoint found;
   float across = float(u_map_size);
 #if KIND == 2
@@ -48,18 +48,21 @@ MapPoint find_in_map(int light, LightMap map, vec3 position, vec3 way) {
   found.height = 1.0;
 #else
   vec3 local = -vec3(dot(map.x.xyz, way), dot(map.y.xyz, way), dot(map.z.xyz, way));
-  found.depth = abs(local.x) + abs(local.y) + abs(local.z);
-  found.scale = found.depth;
-  vec2 at = local.xy / found.depth;
-  found.height = local.z / found.depth;
 #if KIND == 0
-  if ((light & 1) != 0) found.height = -found.height;
-  // The four texels around must be of this light's half.
-  at *= min(1.0, (1.0 - 4.0 / across) / max(abs(at.x) + abs(at.y), 0.5));
-#endif
+  found.depth = max(abs(local.x), abs(local.y)) + local.z;
+  vec2 at = local.xy / found.depth;
+  // Of the octahedron no step across and up is longer than this many.
+  const float kLongest = 1.415;
+#else
+  found.depth = abs(local.x) + abs(local.y) + abs(local.z);
+  vec2 at = local.xy / found.depth;
   if (local.z < 0.0) at = fold(at);
   // A texel across and one up are (1, 1, -2) * 2 / u_map_size on the octahedron.
-  found.reach = found.depth * (4.9 / across);
+  const float kLongest = 2.45;
+#endif
+  found.scale = found.depth;
+  found.height = local.z;
+  found.reach = found.depth * (2.0 * kLongest / across);
 #endif
   found.texel = (0.5 * at + 0.5) * across;
   return found;
@@ -67,14 +70,18 @@ MapPoint find_in_map(int light, LightMap map, vec3 position, vec3 way) {
 
 /// The corner of a light's map in the texture.
 ivec2 corner_of_map(int light) {
-#if KIND == 0
-  light >>= 1;
-#endif
   return ivec2(light & (kMapsAcross - 1), light / kMapsAcross) * u_map_size;
 }
 
 /// The first of the four texels around; at the map's border not all of them are in it.
-ivec2 block_of(vec2 texel) { return ivec2(floor(texel - 0.5)); }
+ivec2 block_of(vec2 texel) {
+  ivec2 block = ivec2(floor(texel - 0.5));
+#if KIND == 0
+  // Beyond is nothing to be lit.
+  block = clamp(block, ivec2(0), ivec2(u_map_size - 2));
+#endif
+  return block;
+}
 
 bool is_at_border(ivec2 low, ivec2 high) {
   return min(low.x, low.y) < 0 || max(high.x, high.y) > u_map_size - 2;

@@ -217,8 +217,8 @@ TEST_P(MapsTest, KeptMapsAreAsGoodAsNewOnes) {
 TEST_P(MapsTest, WhereMemoryEndsSomeAreKept) {
   const test::RasterStage stage(test::own_scene("cornell_box.scene"));
   constexpr int kSize = 64;
-  // Of 32 lights, two to a map.
-  constexpr std::size_t kOneGroup = 16 * kSize * kSize * 16;
+  // Of 32 lights.
+  constexpr std::size_t kOneGroup = 32 * (kSize * 3 / 4) * (kSize * 3 / 4) * 16;
   Maps maps(stage, {.size = kSize, .bytes = 2 * kOneGroup});
   std::vector<LightGroup> groups = maps.groups(stage.lights(80));
   groups.resize(4);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/raster/map_faces.h"
 
+#include <glm/gtc/constants.hpp>
+
 namespace lantern {
 namespace {
 
@@ -44,10 +46,10 @@ MapFace octant(const MapFrame& frame, const Vec3& sign, float radius, int size, 
   const Vec3 x = Vec3(frame.x) * sign.x, y = Vec3(frame.y) * sign.y, z = Vec3(frame.z) * sign.z;
   const Vec3 w = x + y + z;
   MapFace face;
-  face.size = size / 2;
-  face.x = sign.x > 0.0f ? face.size : 0;
-  face.y = sign.y > 0.0f ? face.size : 0;
-  face.side = sign.z > 0.0f ? 1 : -1;
+  face.width = face.height = size / 2;
+  face.x = sign.x > 0.0f ? face.width : 0;
+  face.y = sign.y > 0.0f ? face.height : 0;
+  face.edges[0] = sign.z * Vec3(-sign.x, -sign.y, 1.0f);
   face.origin = Vec3(frame.x.w, frame.y.w, frame.z.w);
   // From the map's middle lines outwards, 0 to 1; the lower half is folded out.
   const Vec3 a = sign.z > 0.0f ? x : w - y;
@@ -58,12 +60,39 @@ MapFace octant(const MapFrame& frame, const Vec3& sign, float radius, int size, 
   return face;
 }
 
+/// The face of half an octahedron, turned by an eighth, between the map's middle and its side in
+/// the direction `x`, of which `y` is across.
+MapFace quarter(const MapFrame& frame, const glm::ivec2& x, float radius, int size,
+                ClipRange range) {
+  const Vec2 to_side(x), across(-x.y, x.x);
+  const auto of_light = [&](const Vec2& v) { return v.x * Vec3(frame.x) + v.y * Vec3(frame.y); };
+  const Vec3 side = of_light(to_side), z = Vec3(frame.z);
+  const Vec3 w = side + z;
+  MapFace face;
+  const int half = size / 2;
+  face.width = x.x != 0 ? half : size;
+  face.height = x.y != 0 ? half : size;
+  face.x = x.x > 0 ? half : 0;
+  face.y = x.y > 0 ? half : 0;
+  face.edges = {Vec3(to_side - across, 0.0f), Vec3(to_side + across, 0.0f)};
+  face.origin = Vec3(frame.x.w, frame.y.w, frame.z.w);
+  // From the middle to the side, or from side to side.
+  const auto clip = [&](const Vec3& v, int sign) {
+    return sign == 0 ? v : 2.0f * v - static_cast<float>(sign) * w;
+  };
+  face.clip = clip_matrix(clip(Vec3(frame.x), x.x), clip(Vec3(frame.y), x.y), w, radius, range);
+  face.depth = w;
+  face.planes = {Vec4(side - of_light(across), 0.0f), Vec4(side + of_light(across), 0.0f),
+                 Vec4(z, 0.0f)};
+  return face;
+}
+
 MapFace parallel_face(const MapFrame& frame, const Bounds& bounds, int size, ClipRange range) {
   const Vec3 travel(frame.z);
   const Vec2 depths = extent(travel, bounds);
   const float deep = std::max(depths.y - depths.x, 1e-3f * bounds.radius());
   MapFace face;
-  face.size = size;
+  face.width = face.height = size;
   face.origin = travel * depths.x;
   face.depth = travel;
   // From a little less than 1 at the nearest to 0, or from -1 to 1.
@@ -88,12 +117,12 @@ std::vector<MapFrame> map_frames(const LightGroup& group, const MapBounds& bound
       continue;
     }
     // A point light has no axis.
-    const Frame frame(group.formula == LightFormula::kSurface ? Vec3(record.axis)
-                                                              : Vec3(0.0f, 0.0f, 1.0f));
-    // The second of two lights in a map shines down, into its other half.
-    const bool down = map_place(group.formula, frames.size()).half == MapHalf::kOutside;
-    frames.push_back({Vec4(frame.tangent, record.place.x), Vec4(frame.bitangent, record.place.y),
-                      Vec4(down ? -frame.normal : frame.normal, record.place.z)});
+    const bool to_one_side = group.formula == LightFormula::kSurface;
+    const Frame frame(to_one_side ? Vec3(record.axis) : Vec3(0.0f, 0.0f, 1.0f));
+    const float scale = to_one_side ? glm::root_two<float>() : 1.0f;
+    frames.push_back({Vec4(scale * frame.tangent, record.place.x),
+                      Vec4(scale * frame.bitangent, record.place.y),
+                      Vec4(frame.normal, record.place.z)});
   }
   return frames;
 }
@@ -117,18 +146,17 @@ bool still_fits(const Bounds& kept, const Bounds& wanted, const Bounds& scene) {
   return fits(wanted.low - kept.low) && fits(kept.high - wanted.high);
 }
 
-MapPlace map_place(LightFormula formula, std::size_t light) {
-  const int i = static_cast<int>(light);
-  if (formula != LightFormula::kSurface) return {i, MapHalf::kWhole};
-  return {i / 2, i % 2 == 0 ? MapHalf::kInside : MapHalf::kOutside};
-}
-
-std::vector<MapFace> map_faces(const MapFrame& frame, LightFormula formula, MapHalf half,
-                               const Bounds& bounds, int size, ClipRange range) {
+std::vector<MapFace> map_faces(const MapFrame& frame, LightFormula formula, const Bounds& bounds,
+                               int size, ClipRange range) {
   if (formula == LightFormula::kDirectional) return {parallel_face(frame, bounds, size, range)};
   std::vector<MapFace> faces;
+  if (formula == LightFormula::kSurface) {
+    for (const glm::ivec2 side : {glm::ivec2(1, 0), {0, 1}, {-1, 0}, {0, -1}}) {
+      faces.push_back(quarter(frame, side, bounds.radius(), size, range));
+    }
+    return faces;
+  }
   for (const float z : {1.0f, -1.0f}) {
-    if (half == (z > 0.0f ? MapHalf::kOutside : MapHalf::kInside)) continue;
     for (const float y : {1.0f, -1.0f}) {
       for (const float x : {1.0f, -1.0f}) {
         faces.push_back(octant(frame, Vec3(x, y, z), bounds.radius(), size, range));

@@ -7,12 +7,13 @@
 #include "lantern/raster/raster_lights.h"
 #include "lantern/raster/view.h"
 
+#include <array>
 #include <vector>
 
 namespace lantern {
 
 /// As `LightMap` in shaders/shadow_maps.glsl has it; the fourth column of a light that has a
-/// position is that.
+/// position is that. Where it shines to one side x and y are sqrt(2) long and z is its axis.
 struct MapFrame {
   Vec4 x{0.0f}, y{0.0f}, z{0.0f};
   bool operator==(const MapFrame&) const = default;
@@ -32,20 +33,11 @@ Bounds snapped(const Bounds& receivers, const Bounds& scene);
 /// Whether maps of the box `kept` do for `wanted`, both snapped: it is inside and not much smaller.
 bool still_fits(const Bounds& kept, const Bounds& wanted, const Bounds& scene);
 
-/// What of an octahedron belongs to a light.
-enum class MapHalf { kWhole, kInside, kOutside };
-
-/// Whose map a light draws into, and which half of it.
-struct MapPlace {
-  int tile;
-  MapHalf half;
-};
-MapPlace map_place(LightFormula formula, std::size_t light);
-
 /// A part of a map that is one picture.
 struct MapFace {
-  int x = 0, y = 0, size = 0;  // its square in the map
-  int side = 0;                // 1: drawn inside the diamond alone, -1: outside, 0: everywhere
+  int x = 0, y = 0, width = 0, height = 0;  // of the map
+  // Drawn where the dot products with (2 x - size, 2 y - size, size) are not negative.
+  std::array<Vec3, 2> edges{Vec3(0.0f), Vec3(0.0f)};
   Vec3 origin{0.0f};
   Mat4 clip{1.0f};           // of positions relative to the origin
   Vec3 depth{0.0f};          // the map's depth is the dot product of such a position with this
@@ -53,7 +45,7 @@ struct MapFace {
 };
 
 /// Those of one light.
-std::vector<MapFace> map_faces(const MapFrame& frame, LightFormula formula, MapHalf half,
-                               const Bounds& bounds, int size, ClipRange range);
+std::vector<MapFace> map_faces(const MapFrame& frame, LightFormula formula, const Bounds& bounds,
+                               int size, ClipRange range);
 
 }  // namespace lantern

@@ -40,7 +40,7 @@ gl::Program caster_program(const gl::ShaderFiles& files, bool holes) {
 }
 
 int rows_of(const LightGroup& group) {
-  return map_place(group.formula, group.records.size() - 1).tile / kMapsAcross + 1;
+  return (static_cast<int>(group.records.size()) - 1) / kMapsAcross + 1;
 }
 
 /// A row for each.
@@ -140,7 +140,8 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
 /// All that is seen is in a picture from infinity, near things too. Holes have the edges of texels
 /// at any size.
 int ShadowMaps::size_of(LightFormula formula) const {
-  if (formula != LightFormula::kDirectional) return options_.size;
+  if (formula == LightFormula::kPunctual) return options_.size;
+  if (formula == LightFormula::kSurface) return options_.size * 3 / 4;
   return (options_.casters == MapCasters::kSolid ? 4 : 2) * options_.size;
 }
 
@@ -200,23 +201,22 @@ void ShadowMaps::draw(const Maps& maps) {
   const gl::Framebuffer finished({&maps.blocks, &maps.numbers});
   View view{};
   view.near_is_1 = options_.range == ClipRange::kFarIs0;
-  for (std::size_t light = 0; light < maps.frames.size();) {
-    const int tile = map_place(maps.formula, light).tile;
+  for (std::size_t light = 0; light < maps.frames.size(); ++light) {
     unfinished.framebuffer.bind();
     apply({.depth = DepthUse::kDraw}, view);
     const GLuint nothing[4] = {};
     glClearBufferuiv(GL_COLOR, 0, nothing);
     const float far = far_depth(view);
     glClearBufferfv(GL_DEPTH, 0, &far);
-    for (; light < maps.frames.size() && map_place(maps.formula, light).tile == tile; ++light) {
-      draw_light(maps, light);
-    }
+    draw_light(maps, light);
     reset_draw_state();
     finished.bind();
-    glViewport(tile % kMapsAcross * size, tile / kMapsAcross * size, size, size);
+    const int place = static_cast<int>(light);
+    const glm::ivec2 first = size * glm::ivec2(place % kMapsAcross, place / kMapsAcross);
+    glViewport(first.x, first.y, size, size);
     blocks_.set("u_texels", 0, unfinished.texels);
     blocks_.set("u_map_size", size);
-    blocks_.set("u_halves", maps.formula == LightFormula::kSurface ? 1 : 0);
+    blocks_.set("u_first", first);
     gl::draw_full_screen(no_vertices_);
   }
   drawn_ += maps.frames.size();
@@ -245,9 +245,8 @@ void ShadowMaps::draw_windows(const Maps& maps) {
 
 void ShadowMaps::draw_light(const Maps& maps, std::size_t light) {
   const int size = size_of(maps.formula);
-  const MapPlace place = map_place(maps.formula, light);
   const std::vector<MapFace> faces =
-      map_faces(maps.frames[light], maps.formula, place.half, bounds_, size, options_.range);
+      map_faces(maps.frames[light], maps.formula, bounds_, size, options_.range);
   std::vector<std::uint32_t> indices;
   std::vector<std::size_t> ends;  // of each face's part of each batch
   for (const Batch& batch : casters_.batches) {
@@ -278,14 +277,13 @@ void ShadowMaps::draw_light(const Maps& maps, std::size_t light) {
       program.set("u_seed", seed_of(maps.frames[light]));
     }
     program.set("u_map_size", size);
-    // Of two lights in a map neither has the diamond between them.
-    program.set("u_on", place.half == MapHalf::kWhole ? 0 : -1);
     for (const MapFace& face : faces) {
       program.set("u_origin", face.origin);
-      program.set("u_side", face.side);
+      program.set("u_edges[0]", face.edges[0]);
+      program.set("u_edges[1]", face.edges[1]);
       program.set("u_clip", face.clip);
       program.set("u_depth", face.depth);
-      glViewport(face.x, face.y, face.size, face.size);
+      glViewport(face.x, face.y, face.width, face.height);
       const std::size_t end = ends[part++];
       glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(end - first), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(first * sizeof(std::uint32_t)));
