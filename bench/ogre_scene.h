@@ -29,7 +29,8 @@ struct OgreOptions {
 class OgreScene {
  public:
   /// One in a process. Objects are the connected parts of the surfaces of one material. Walls (see
-  /// find_walls()) and lamps cast no shadows.
+  /// find_walls()) and lamps cast no shadows. GL3Plus throws at an open sheet that turns its back
+  /// on a light, where Ogre has no index of a volume to write.
   OgreScene(const Scene& scene, const World& world, const Camera& camera,
             const OgreOptions& options);
   ~OgreScene();
