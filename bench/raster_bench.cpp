@@ -93,7 +93,7 @@ int main(int argc, char** argv) {
   ShadowMaps maps(scene, world, surfaces, files, {});
   unshadowed.set_block("Lights", 0);
   StencilShadows shadows(world, files, VolumeMethod::kExact);
-  MaskedShading shading(files, {kWidth, kHeight, 0, false});
+  MaskedShading shading(files, kWidth, kHeight, 0);
   StageTimes times;
   GBuffer g_buffer(kWidth, kHeight);
   gl::Texture mask(gl::Format::kRgba8, kWidth, kHeight);
@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
     for (const LightGroup& group : groups) {
       shadows.draw(group.points, view, mask_framebuffer, times);
       with_block(group);
-      shading.add(group, g_buffer, mask, view);
+      shading.add(group, g_buffer, mask);
     }
     shading.copy_to(irradiance);
   });
@@ -147,8 +147,7 @@ int main(int argc, char** argv) {
     for (const LightGroup& group : groups) maps.draw(group, world.bounds, times);
   });
   // Whole frames but for the resolve: surfaces are drawn in a hundredth of the time.
-  Lighting lighting(surfaces, {.volumes = nullptr, .maps = {&maps}}, times, files,
-                    {kWidth, kHeight});
+  Lighting lighting(surfaces, {.volumes = nullptr, .maps = {&maps}}, times, files, kWidth, kHeight);
   const double map_shading = cost([&] { lighting.draw(view, groups, [] { return true; }); });
   const EdgeList list(world, find_walls(world));
   double edges = 0;

@@ -12,20 +12,18 @@ ivec2 first_pixel_of(ivec2 quad) {
   return ivec2(quad.x / TILE * kColumns, quad.y * TILE + quad.x % TILE);
 }
 
-/// What is known of a tile, as bits: which neighbours are parts of the same plane, and whether the
-/// tile is too rough for what its shares give to stand for its pixels.
+/// Where a pixel stands among the shares' pictures, together of this size.
+ivec2 place_among_shares(ivec2 pixel, ivec2 size) {
+  return (pixel % TILE) * (size / TILE) + pixel / TILE;
+}
+
+/// How far a pixel is from the middle of its tile, along one axis, in tiles.
+float off_middle(int pixel) { return (float(pixel % TILE) + 0.5) / float(TILE) - 0.5; }
+
+/// What is known of a tile, as bits: which neighbours are parts of the same plane, and whether it
+/// is too rough for what is known of its middle to stand for its pixels.
 const uint kBefore = 1u;
 const uint kAfter = 2u;
 const uint kAbove = 4u;
 const uint kBelow = 8u;
 const uint kRough = 16u;
-
-/// The pixel that has this coordinate's share: at it or, if that is off this tile and not joined to
-/// it, in this tile.
-int within(int at, int tile, bool before, bool after) {
-  if (at < tile * TILE) return before ? at : at + TILE;
-  return at < (tile + 1) * TILE || after ? at : at - TILE;
-}
-
-/// Of a pixel so far away along one axis; the sum over all of a share is 1.
-float nearness(int away) { return max(0.0, 1.0 - abs(float(away)) / float(TILE)); }

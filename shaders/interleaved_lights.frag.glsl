@@ -2,16 +2,13 @@
 // Irradiance where tiles are not smooth: each light gives what it gives to this very point, were
 // nothing between, as far as it is seen from its share's pixels around on the same surface.
 #include "shaders/interleaved_quads.glsl"
-#include "shaders/lights.glsl"
+#include "shaders/interleaved_masks.glsl"
 #include "shaders/octahedral.glsl"
 
 uniform highp usampler2D u_points;
 uniform highp usampler2D u_reflectances;
-uniform highp usampler2D u_shares;         // alpha: bits of the lights that would give something
-uniform sampler2D u_masks;                 // bits of those that are seen
-uniform highp usampler2D u_lights_of;      // of each share the first and how many
 uniform sampler2D u_red, u_green, u_blue;  // what there is
-uniform bool u_first_lights;               // there is nothing yet
+uniform bool u_first_round;                // there is nothing yet
 uniform float u_plane_distance;            // as far off is another surface
 
 Point point_at(ivec2 at) {
@@ -19,11 +16,6 @@ Point point_at(ivec2 at) {
   uvec4 bits = texelFetch(u_points, at, 0);
   return Point(uintBitsToFloat(bits.xyz), unpack_unit(bits.w),
                unpack_unit(texelFetch(u_reflectances, at, 0).w));
-}
-
-uint mask_at(ivec2 place) {
-  uvec4 bytes = uvec4(texelFetch(u_masks, place, 0) * 255.0 + 0.5);
-  return bytes.r | (bytes.g << 8) | (bytes.b << 16) | (bytes.a << 24);
 }
 
 /// The pixels that are shaded.
@@ -46,32 +38,37 @@ float nearness_of(Point p, Point other) {
   return 1.0 / (dot(way, way) + 1e-8);
 }
 
-/// What a pixel of a share knows of its lights, as bits.
+/// What a pixel of a share knows of its lights.
 struct Witness {
-  uint lit;  // they would give something to it
-  uint seen;
-  vec4 strange, near;  // to each of the pixels
+  Point point;  // without normals if there is none
+  uint seen;    // bits of lights
+  vec4 strange, weight;  // to each of the pixels
 };
 
 Witness witness(ivec2 at, Pixels pixels) {
-  if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, textureSize(u_points, 0)))) {
-    return Witness(0u, 0u, vec4(1e30), vec4(0.0));
-  }
-  bool is_sky = texelFetch(u_points, at, 0) == uvec4(0u);
-  ivec2 place = (at % TILE) * (textureSize(u_shares, 0) / TILE) + at / TILE;
-  uint lit = is_sky ? 0u : texelFetch(u_shares, place, 0).a;
-  Point other = point_at(at);
-  return Witness(lit, lit & mask_at(place),
-                 vec4(strangeness(pixels.p0, other), strangeness(pixels.p1, other),
-                      strangeness(pixels.p2, other), strangeness(pixels.p3, other)),
-                 vec4(nearness_of(pixels.p0, other), nearness_of(pixels.p1, other),
-                      nearness_of(pixels.p2, other), nearness_of(pixels.p3, other)));
+  Witness w;
+  w.point = Point(vec3(0.0), vec3(0.0), vec3(0.0));
+  w.seen = 0u;
+  w.strange = vec4(1e30);
+  w.weight = vec4(0.0);
+  if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, textureSize(u_points, 0)))) return w;
+  if (texelFetch(u_points, at, 0) == uvec4(0u)) return w;  // the sky
+  w.point = point_at(at);
+  w.seen = mask_at(place_among_shares(at, textureSize(u_masks, 0)));
+  w.strange = vec4(strangeness(pixels.p0, w.point), strangeness(pixels.p1, w.point),
+                   strangeness(pixels.p2, w.point), strangeness(pixels.p3, w.point));
+  w.weight = vec4(nearness_of(pixels.p0, w.point), nearness_of(pixels.p1, w.point),
+                  nearness_of(pixels.p2, w.point), nearness_of(pixels.p3, w.point));
+  return w;
 }
 
-/// All bits where the witness is not too strange.
-uvec4 heard(Witness w, vec4 least) { return uvec4(lessThanEqual(w.strange, least)) * 0xffffffffu; }
+/// Its weight where it is not too strange.
+vec4 heard(Witness w, vec4 least) { return w.weight * vec4(lessThanEqual(w.strange, least)); }
 
-vec4 bit(uvec4 bits, int i) { return vec4((bits >> uint(i)) & 1u); }
+/// Whether the light could be seen, were nothing between.
+float faces(Witness w, Light light) {
+  return dot(w.point.geometric, way_to(light, w.point)) > 0.0 ? 1.0 : 0.0;
+}
 
 void main() {
   ivec2 at = first_pixel_of(ivec2(gl_FragCoord.xy));
@@ -89,22 +86,21 @@ void main() {
     Witness a = witness(ivec2(x0, y0), pixels), b = witness(ivec2(x1, y0), pixels);
     Witness c = witness(ivec2(x0, y1), pixels), d = witness(ivec2(x1, y1), pixels);
     vec4 least = min(min(a.strange, b.strange), min(c.strange, d.strange));
-    uvec4 hear_a = heard(a, least), hear_b = heard(b, least);
-    uvec4 hear_c = heard(c, least), hear_d = heard(d, least);
-    uvec4 lit_a = hear_a & a.lit, lit_b = hear_b & b.lit, lit_c = hear_c & c.lit;
-    uvec4 lit_d = hear_d & d.lit, seen_a = hear_a & a.seen, seen_b = hear_b & b.seen;
-    uvec4 seen_c = hear_c & c.seen, seen_d = hear_d & d.seen;
-    // Of what these cannot tell the others may; what nobody could see is seen.
-    uint any_seen = a.seen | b.seen | c.seen | d.seen | ~(a.lit | b.lit | c.lit | d.lit);
-    uvec4 others = any_seen & ~(lit_a | lit_b | lit_c | lit_d);
+    vec4 hear_a = heard(a, least), hear_b = heard(b, least);
+    vec4 hear_c = heard(c, least), hear_d = heard(d, least);
+    uvec4 seen_by = uvec4(a.seen, b.seen, c.seen, d.seen);
     for (int i = 0; i < count; ++i) {
       Light light = u_lights[first + i];
-      vec4 lit = a.near * bit(lit_a, i) + b.near * bit(lit_b, i) + c.near * bit(lit_c, i) +
-                 d.near * bit(lit_d, i);
-      vec4 seen = a.near * bit(seen_a, i) + b.near * bit(seen_b, i) + c.near * bit(seen_c, i) +
-                  d.near * bit(seen_d, i);
+      vec4 can = vec4(faces(a, light), faces(b, light), faces(c, light), faces(d, light));
+      vec4 do_see = can * vec4(bit(seen_by, i));
+      vec4 could = can.x * hear_a + can.y * hear_b + can.z * hear_c + can.w * hear_d;
+      vec4 seen = do_see.x * hear_a + do_see.y * hear_b + do_see.z * hear_c + do_see.w * hear_d;
       // Shadows have edges: what most say counts for more.
-      seen = clamp(2.0 * seen / max(lit, 1e-30) - 0.5, 0.0, 1.0) + bit(others, i);
+      seen = clamp(2.0 * seen / max(could, 1e-30) - 0.5, 0.0, 1.0);
+      // Of what these cannot tell the others may; what nobody could see is seen.
+      bool any_sees = any(greaterThan(do_see, vec4(0.0)));
+      bool none_can = all(equal(can, vec4(0.0)));
+      seen = mix(vec4(any_sees || none_can), seen, vec4(greaterThan(could, vec4(0.0))));
       sum0 += seen.x * irradiance_from(light, pixels.p0);
       sum1 += seen.y * irradiance_from(light, pixels.p1);
       sum2 += seen.z * irradiance_from(light, pixels.p2);
@@ -114,7 +110,7 @@ void main() {
   o_red = vec4(sum0.r, sum1.r, sum2.r, sum3.r);
   o_green = vec4(sum0.g, sum1.g, sum2.g, sum3.g);
   o_blue = vec4(sum0.b, sum1.b, sum2.b, sum3.b);
-  if (u_first_lights) return;
+  if (u_first_round) return;
   o_red += texelFetch(u_red, ivec2(gl_FragCoord.xy), 0);
   o_green += texelFetch(u_green, ivec2(gl_FragCoord.xy), 0);
   o_blue += texelFetch(u_blue, ivec2(gl_FragCoord.xy), 0);

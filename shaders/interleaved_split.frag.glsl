@@ -1,20 +1,28 @@
 // SPDX-License-Identifier: MIT
-// The G-buffer of every TILE-th pixel, from that of all.
+// The pictures of all shares side by side, from that of all pixels: depth and, with POINTS, all of
+// the G-buffer.
+#include "shaders/interleaved.glsl"
+
+uniform highp sampler2D u_depth;
+uniform ivec2 u_share_size;
+#if POINTS
 uniform highp usampler2D u_points;
 uniform highp usampler2D u_reflectances;
 uniform sampler2D u_emissions;
-uniform highp sampler2D u_depth;
-uniform ivec2 u_first;
 
 layout(location = 0) out uvec4 o_point;
 layout(location = 1) out uvec4 o_reflectance;
 layout(location = 2) out vec4 o_emission;
+#endif
 
 void main() {
-  ivec2 at = u_first + TILE * ivec2(gl_FragCoord.xy);
-  at = min(at, textureSize(u_points, 0) - 1);
+  ivec2 place = ivec2(gl_FragCoord.xy), share = place / u_share_size;
+  ivec2 at = share + TILE * (place - share * u_share_size);
+  at = min(at, textureSize(u_depth, 0) - 1);
+#if POINTS
   o_point = texelFetch(u_points, at, 0);
   o_reflectance = texelFetch(u_reflectances, at, 0);
   o_emission = texelFetch(u_emissions, at, 0);
+#endif
   gl_FragDepth = texelFetch(u_depth, at, 0).r;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Of each tile a point and its normal, as in the G-buffer, if all of it is in that plane.
+// Of each tile the mean of its points and their normal, as in the G-buffer, if all of it is in one
+// plane.
 #include "shaders/interleaved_planes.glsl"
 
 uniform highp usampler2D u_points;
@@ -9,11 +10,15 @@ layout(location = 0) out uvec4 o_tile;
 void main() {
   ivec2 first = TILE * ivec2(gl_FragCoord.xy);
   uvec4 plane = texelFetch(u_points, first, 0);
-  bool flat_tile = all(lessThanEqual(first + TILE, textureSize(u_points, 0)));
+  bool is_flat = all(lessThanEqual(first + TILE, textureSize(u_points, 0)));
+  vec3 sum = vec3(0.0);
   for (int y = 0; y < TILE; ++y) {
     for (int x = 0; x < TILE; ++x) {
-      flat_tile = is_in_plane(plane, texelFetch(u_points, first + ivec2(x, y), 0)) && flat_tile;
+      uvec4 point = texelFetch(u_points, first + ivec2(x, y), 0);
+      is_flat = is_in_plane(plane, point) && is_flat;
+      sum += uintBitsToFloat(point.xyz);
     }
   }
-  o_tile = uvec4(plane.xyz, flat_tile ? plane.w : kNotFlat);
+  vec3 middle = sum / float(TILE * TILE);
+  o_tile = uvec4(floatBitsToUint(middle), is_flat ? plane.w : kNotFlat);
 }

@@ -10,11 +10,8 @@ uniform highp usampler2D u_reflectances;
 uniform sampler2D u_mask;
 uniform highp usampler2D u_sum_0, u_sum_1, u_sum_2, u_sum_3;
 uniform int u_count;
-uniform ivec2 u_first;  // pixel of the G-buffer that the mask begins with
-uniform int u_step;     // and how far apart its pixels are there
 
-// The irradiance's bits and, with LIT, those of the lights that would give something, were nothing
-// between.
+// The irradiance's bits.
 layout(location = 0) out uvec4 o_irradiance_0;
 layout(location = 1) out uvec4 o_irradiance_1;
 layout(location = 2) out uvec4 o_irradiance_2;
@@ -29,7 +26,6 @@ ivec2 pixel_of(int strip) {
 
 Point point_of(int strip) {
   ivec2 at = pixel_of(strip);
-  at = min(u_first + u_step * at, textureSize(u_points, 0) - 1);
   uvec4 bits = texelFetch(u_points, at, 0);
   Point p;
   p.position = uintBitsToFloat(bits.xyz);
@@ -43,33 +39,22 @@ uint mask_of(int strip) {
   return bytes.r | (bytes.g << 8) | (bytes.b << 16) | (bytes.a << 24);
 }
 
-struct Sum {
-  vec3 irradiance;
-  uint lit;
-};
-
-Sum sum_of(highp usampler2D before) {
-  return Sum(uintBitsToFloat(texelFetch(before, ivec2(gl_FragCoord.xy), 0).rgb), 0u);
+vec3 sum_of(highp usampler2D before) {
+  return uintBitsToFloat(texelFetch(before, ivec2(gl_FragCoord.xy), 0).rgb);
 }
 
-Sum with_light(Sum sum, Light light, Point p, uint bit, uint mask) {
-#if LIT
-  vec3 irradiance = irradiance_from(light, p);
-  if (irradiance != vec3(0.0)) sum.lit |= bit;
-  if ((mask & bit) != 0u) sum.irradiance += irradiance;
-#else
-  if ((mask & bit) != 0u) sum.irradiance += irradiance_from(light, p);
-#endif
+vec3 with_light(vec3 sum, Light light, Point p, uint bit, uint mask) {
+  if ((mask & bit) != 0u) sum += irradiance_from(light, p);
   return sum;
 }
 
-uvec4 packed_sum(Sum sum) { return uvec4(floatBitsToUint(sum.irradiance), sum.lit); }
+uvec4 packed_sum(vec3 sum) { return uvec4(floatBitsToUint(sum), 0u); }
 
 void main() {
   Point p0 = point_of(0), p1 = point_of(1), p2 = point_of(2), p3 = point_of(3);
   uvec4 mask = uvec4(mask_of(0), mask_of(1), mask_of(2), mask_of(3));
-  Sum sum0 = sum_of(u_sum_0), sum1 = sum_of(u_sum_1), sum2 = sum_of(u_sum_2);
-  Sum sum3 = sum_of(u_sum_3);
+  vec3 sum0 = sum_of(u_sum_0), sum1 = sum_of(u_sum_1), sum2 = sum_of(u_sum_2);
+  vec3 sum3 = sum_of(u_sum_3);
   for (int i = 0; i < u_count; ++i) {
     Light light = u_lights[i];
     uint bit = 1u << uint(i);

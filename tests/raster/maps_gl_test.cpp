@@ -45,8 +45,8 @@ struct Maps {
       : stage(with),
         surfaces(with.scene, with.world, files),
         maps(with.scene, with.world, surfaces, files, options),
-        by_maps(surfaces, {.volumes = nullptr, .maps = {&maps}}, times, files, {kWidth, kHeight}),
-        unshadowed(surfaces, {}, times, files, {kWidth, kHeight}) {}
+        by_maps(surfaces, {.volumes = nullptr, .maps = {&maps}}, times, files, kWidth, kHeight),
+        unshadowed(surfaces, {}, times, files, kWidth, kHeight) {}
 
   std::vector<LightGroup> groups(const VirtualLights& lights) const {
     return group_lights(lights, {}, stage.world.coordinate_scale());
@@ -202,7 +202,7 @@ TEST_P(MapsTest, KeptMapsAreAsGoodAsNewOnes) {
   for (const LightGroup& group : groups) lights += group.records.size();
   for (std::size_t view = 1; view <= 3; ++view) {
     const Camera camera = test::random_cameras(stage.world.bounds, 3)[view - 1];
-    kept.maps.keep(std::span(&groups, 1));
+    kept.maps.keep(groups);
     EXPECT_EQ(kept.irradiance(kept.by_maps, camera, groups),
               fresh.irradiance(fresh.by_maps, camera, groups));
     EXPECT_EQ(kept.maps.drawn(), lights);

@@ -73,6 +73,10 @@ void apply(const DrawState& state, const View& view) {
   }
 }
 
+void set_viewport(const View& view) {
+  glViewport(view.origin.x, view.origin.y, view.size.x, view.size.y);
+}
+
 void reset_draw_state() {
   clip_control(false);
   glDisable(GL_DEPTH_TEST);

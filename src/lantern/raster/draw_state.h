@@ -35,6 +35,9 @@ struct DrawState {
 /// Until the next call. `view` decides which depth is near.
 void apply(const DrawState& state, const View& view);
 
+/// Draws go to the view's part of the framebuffer that is bound, all of which they would else.
+void set_viewport(const View& view);
+
 /// GL as it starts, and as others expect it.
 void reset_draw_state();
 

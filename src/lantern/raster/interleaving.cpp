@@ -3,44 +3,44 @@
 
 #include "lantern/gl/check.h"
 #include "lantern/raster/draw_state.h"
+#include "lantern/raster/light_shares.h"
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace lantern {
-
-std::vector<std::vector<std::uint32_t>> share_out(const VirtualLights& lights, std::size_t shares,
-                                                  std::size_t turn) {
-  std::vector<std::size_t> of_bounce;  // how many lights
-  for (const std::uint32_t bounce : lights.bounce) {
-    of_bounce.resize(std::max<std::size_t>(of_bounce.size(), bounce + 1));
-    ++of_bounce[bounce];
-  }
-  std::vector<std::vector<std::uint32_t>> sets(shares);
-  std::vector<std::size_t> seen(of_bounce.size(), 0), start(of_bounce.size(), turn);
-  for (std::size_t b = 1; b < start.size(); ++b) start[b] = start[b - 1] + of_bounce[b - 1];
-  for (std::uint32_t i = 0; i < lights.size(); ++i) {
-    const std::uint32_t bounce = lights.bounce[i];
-    const std::size_t run = seen[bounce]++ * shares / of_bounce[bounce];
-    sets[(start[bounce] + run) % shares].push_back(i);
-  }
-  return sets;
-}
-
 namespace {
 
 constexpr GLuint kLightsBinding = 0;
-/// As many as every GL has room for in a uniform block.
-constexpr std::size_t kLightsInBlock = 16384 / sizeof(LightRecord);
+constexpr int kTilesOfQuad = 4;
 
-int in_tiles(int pixels, int tile) { return (pixels + tile - 1) / tile; }
+int round_up(int n, int step) { return (n + step - 1) / step * step; }
 
 /// Pixels of a row that a fragment makes.
 int columns_of(int tile) { return std::min(tile, 4); }
 
-gl::Program program_of(const gl::ShaderFiles& files, const char* fragment, int tile) {
-  return gl::Program(files, "shaders/full_screen.vert.glsl", fragment,
-                     Interleaving::definitions(tile));
+gl::Program program_of(const gl::ShaderFiles& files, const char* fragment, int tile,
+                       const std::vector<gl::Definition>& more = {}) {
+  std::vector<gl::Definition> definitions = Interleaving::definitions(tile);
+  definitions.insert(definitions.end(), more.begin(), more.end());
+  return gl::Program(files, "shaders/full_screen.vert.glsl", fragment, definitions);
+}
+
+std::vector<gl::Program> programs_of_lights(const gl::ShaderFiles& files, const char* fragment,
+                                            int tile) {
+  std::vector<gl::Program> programs;
+  for (int formula = 0; formula < kLightFormulas; ++formula) {
+    programs.push_back(program_of(
+        files, fragment, tile,
+        {{"KIND", std::to_string(formula)}, {"LIGHTS", std::to_string(kLightsInRound)}}));
+    programs.back().set_block("Lights", kLightsBinding);
+  }
+  return programs;
+}
+
+bool asks_more_than_depth(const Shadows& shadows) {
+  return !shadows.maps.empty() || (shadows.volumes && shadows.volumes->needs_depth_of_view());
 }
 
 }  // namespace
@@ -49,11 +49,20 @@ std::vector<gl::Definition> Interleaving::definitions(int tile) {
   return {{"TILE", std::to_string(tile)}};
 }
 
-Interleaving::Quads::Quads(int width, int height, const gl::Texture* stencil)
+Interleaving::SharePictures::SharePictures(const glm::ivec2& size, bool asks_all) {
+  if (asks_all) {
+    all.emplace(size.x, size.y);
+    return;
+  }
+  depth_alone.emplace(gl::Format::kDepth32fStencil8, size.x, size.y);
+  depth_framebuffer.emplace(std::initializer_list<const gl::Texture*>(), &*depth_alone);
+}
+
+Interleaving::Quads::Quads(int width, int height, const gl::Texture& stencil)
     : red(gl::Format::kRgba32f, width, height),
       green(gl::Format::kRgba32f, width, height),
       blue(gl::Format::kRgba32f, width, height),
-      framebuffer({&red, &green, &blue}, stencil) {}
+      framebuffer({&red, &green, &blue}, &stencil) {}
 
 void Interleaving::Quads::set_in(const gl::Program& program, int unit) const {
   program.set("u_red", unit, red);
@@ -61,169 +70,216 @@ void Interleaving::Quads::set_in(const gl::Program& program, int unit) const {
   program.set("u_blue", unit + 2, blue);
 }
 
-Interleaving::Round::Round(const glm::ivec2& size, int tile)
-    : shares(gl::Format::kRgba32ui, size.x, size.y),
-      masks(gl::Format::kRgba8, size.x, size.y),
-      groups(static_cast<std::size_t>(tile * tile)) {}
+Interleaving::TileQuads::TileQuads(int width, int height)
+    : red(gl::Format::kRgba32f, width, height),
+      green(gl::Format::kRgba32f, width, height),
+      blue(gl::Format::kRgba32f, width, height),
+      changes(gl::Format::kRgba32f, width, height),
+      framebuffer({&red, &green, &blue, &changes}) {}
 
-// A tile sees about a hundredth of the scene; further off its plane is another surface.
-Interleaving::Interleaving(const gl::ShaderFiles& files, int width, int height, int tile,
-                           float radius)
-    : tile_(tile),
-      plane_distance_(1e-2f * radius),
-      split_(program_of(files, "shaders/interleaved_split.frag.glsl", tile)),
-      find_tiles_(program_of(files, "shaders/interleaved_tiles.frag.glsl", tile)),
-      join_tiles_(program_of(files, "shaders/interleaved_joins.frag.glsl", tile)),
-      add_rows_(program_of(files, "shaders/interleaved_rows.frag.glsl", tile)),
-      add_columns_(program_of(files, "shaders/interleaved_columns.frag.glsl", tile)),
-      tiles_(gl::Format::kRgba32ui, in_tiles(width, tile), in_tiles(height, tile)),
-      joins_(gl::Format::kR32ui, tiles_.width(), tiles_.height()),
-      of_shares_(gl::Format::kRg32ui, tile * tile, 1),
-      stencil_(gl::Format::kDepth32fStencil8, in_tiles(width, columns_of(tile)) * tile,
-               tiles_.height()),
-      lights_(std::span<const LightRecord>()),
-      tile_framebuffer_({&tiles_}),
-      join_framebuffer_({&joins_}),
-      rows_(stencil_.width(), stencil_.height(), nullptr),
-      irradiance_{Quads(stencil_.width(), stencil_.height(), &stencil_),
-                  Quads(stencil_.width(), stencil_.height(), &stencil_)} {
-  for (int formula = 0; formula < kLightFormulas; ++formula) {
-    std::vector<gl::Definition> with = definitions(tile);
-    with.push_back({"KIND", std::to_string(formula)});
-    with.push_back({"LIGHTS", std::to_string(kLightsInBlock)});
-    add_lights_.emplace_back(files, "shaders/full_screen.vert.glsl",
-                             "shaders/interleaved_lights.frag.glsl", with);
-    add_lights_.back().set_block("Lights", kLightsBinding);
-  }
+void Interleaving::TileQuads::set_in(const gl::Program& program, int unit) const {
+  program.set("u_red", unit, red);
+  program.set("u_green", unit + 1, green);
+  program.set("u_blue", unit + 2, blue);
+  program.set("u_changes", unit + 3, changes);
 }
 
-void Interleaving::split(const GBuffer& whole, const View& of_share, const GBuffer& share,
-                         bool all) const {
-  share.framebuffer.bind();
-  apply({.depth = DepthUse::kReplace, .colour = all}, of_share);
-  glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(of_share), 0);
-  split_.set("u_points", 0, whole.points);
-  split_.set("u_reflectances", 1, whole.reflectances);
-  split_.set("u_emissions", 2, whole.emissions);
-  split_.set("u_depth", 3, whole.depth);
-  split_.set("u_first", of_share.first);
+Interleaving::Round::Round(const glm::ivec2& size, int shares)
+    : masks(gl::Format::kRgba8, size.x, size.y),
+      lights_of(gl::Format::kRg32ui, shares, 1),
+      lights(std::span<const LightRecord>()) {}
+
+// A tile sees about a hundredth of the scene; further off its plane is another surface. Shares'
+// pictures begin where quads of tiles do.
+Interleaving::Interleaving(const Surfaces& surfaces, const Shadows& shadows, StageTimes& times,
+                           const gl::ShaderFiles& files, const ViewOptions& options)
+    : surfaces_(surfaces),
+      times_(times),
+      view_options_(options),
+      tile_(options.step),
+      tiles_(options.columns(), options.rows()),
+      share_size_(round_up(tiles_.x, kTilesOfQuad), round_up(tiles_.y, kTilesOfQuad)),
+      plane_distance_(1e-2f * options.radius),
+      whole_(options.width, options.height),
+      shares_(tile_ * share_size_, asks_more_than_depth(shadows)),
+      masks_(shadows, times, files, shares_.depth()),
+      split_(program_of(files, "shaders/interleaved_split.frag.glsl", tile_,
+                        {{"POINTS", shares_.all ? "1" : "0"}})),
+      find_tiles_(program_of(files, "shaders/interleaved_tiles.frag.glsl", tile_)),
+      join_tiles_(program_of(files, "shaders/interleaved_joins.frag.glsl", tile_)),
+      find_middles_(program_of(files, "shaders/interleaved_middles.frag.glsl", tile_)),
+      fill_smooth_(program_of(files, "shaders/interleaved_smooth.frag.glsl", tile_)),
+      add_shares_(programs_of_lights(files, "shaders/interleaved_shares.frag.glsl", tile_)),
+      add_lights_(programs_of_lights(files, "shaders/interleaved_lights.frag.glsl", tile_)),
+      planes_(gl::Format::kRgba32ui, tiles_.x, tiles_.y),
+      joins_(gl::Format::kR32ui, tiles_.x, tiles_.y),
+      middles_(gl::Format::kRgba32ui, tiles_.x, tiles_.y),
+      stencil_(gl::Format::kDepth32fStencil8,
+               round_up(options.width, columns_of(tile_)) / columns_of(tile_) * tile_, tiles_.y),
+      planes_framebuffer_({&planes_}),
+      joins_framebuffer_({&joins_}),
+      middles_framebuffer_({&middles_}),
+      tile_irradiance_{TileQuads(share_size_.x / kTilesOfQuad, tiles_.y),
+                       TileQuads(share_size_.x / kTilesOfQuad, tiles_.y)},
+      irradiance_{Quads(stencil_.width(), stencil_.height(), stencil_),
+                  Quads(stencil_.width(), stencil_.height(), stencil_)} {}
+
+void Interleaving::split(const View& view) const {
+  shares_.framebuffer().bind();
+  apply({.depth = DepthUse::kReplace}, view);
+  glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(view), 0);
+  split_.set("u_depth", 0, whole_.depth);
+  split_.set("u_share_size", share_size_);
+  if (shares_.all) {
+    split_.set("u_points", 1, whole_.points);
+    split_.set("u_reflectances", 2, whole_.reflectances);
+    split_.set("u_emissions", 3, whole_.emissions);
+  }
   gl::draw_full_screen(no_vertices_);
   reset_draw_state();
   gl::check("splitting");
 }
 
-void Interleaving::begin(std::size_t rounds) {
-  rounds = std::max<std::size_t>(rounds, 1);
-  while (rounds_.size() > rounds) rounds_.pop_back();
-  while (rounds_.size() < rounds) {
-    rounds_.emplace_back(tile_ * glm::ivec2(tiles_.width(), tiles_.height()), tile_);
+void Interleaving::draw_surfaces(const View& view, std::span<const View> of_shares) {
+  times_.begin(Stage::kSurfaces);
+  surfaces_.draw(view, whole_);
+  if (masks_.needs_depth_of_views()) {
+    for (const View& of_share : of_shares) surfaces_.draw(of_share, *shares_.all);
+  } else {
+    split(view);
   }
-  for (Round& round : rounds_) {
-    std::fill(round.groups.begin(), round.groups.end(), std::nullopt);
+  if (masks_.asks_points()) masks_.look_at(*shares_.all);
+  times_.end();
+}
+
+void Interleaving::look(Round& round, std::span<const View> of_shares,
+                        std::span<const LightGroup> groups) {
+  std::vector<GroupInView> in_view;
+  std::vector<LightRecord> lights;
+  std::vector<std::uint32_t> lights_of(2 * of_shares.size());
+  for (const LightGroup& group : groups) {
+    in_view.push_back({of_shares[group.share], group});
+    lights_of[2 * group.share] = static_cast<std::uint32_t>(lights.size());
+    lights_of[2 * group.share + 1] = static_cast<std::uint32_t>(group.records.size());
+    lights.insert(lights.end(), group.records.begin(), group.records.end());
   }
-}
-
-std::size_t Interleaving::number(const glm::ivec2& share) const {
-  return static_cast<std::size_t>(share.y * tile_ + share.x);
-}
-
-glm::ivec2 Interleaving::corner(const glm::ivec2& share) const {
-  return share * glm::ivec2(tiles_.width(), tiles_.height());
-}
-
-void Interleaving::take(const glm::ivec2& share, std::size_t number_of_group,
-                        const LightGroup& group, const Lighting& done) {
-  Round& round = rounds_[number_of_group];
-  round.groups[number(share)] = group;
-  const glm::ivec2 at = corner(share);
-  done.shading().copy_to(round.shares, at.x, at.y);
-  const gl::Framebuffer masks({&done.mask()});
+  lights.resize(kLightsInRound);
+  round.formula = groups.front().formula;
+  round.lights.write(std::span<const LightRecord>(lights));
+  round.lights_of.write(std::span<const std::uint32_t>(lights_of));
+  const gl::Framebuffer masks({&masks_.draw(in_view)});
   masks.bind();
   round.masks.bind(0);
-  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, at.x, at.y, 0, 0, tiles_.width(), tiles_.height());
-  gl::check("copying a share of the lights");
+  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, round.masks.width(), round.masks.height());
+  gl::check("keeping a round of masks");
 }
 
-void Interleaving::end(const glm::ivec2& share, const MaskedShading& irradiance) {
-  const Round& last = rounds_.back();
-  const glm::ivec2 at = corner(share);
-  if (!last.groups[number(share)]) irradiance.copy_to(last.shares, at.x, at.y);
+void Interleaving::set_in(const gl::Program& program, const Round& round, bool first) const {
+  round.lights.bind_as_uniforms(kLightsBinding);
+  program.set("u_masks", 0, round.masks);
+  program.set("u_lights_of", 1, round.lights_of);
+  program.set("u_first_round", first ? 1 : 0);
 }
 
-void Interleaving::append_passes(const Round& round, LightFormula formula,
-                                 std::vector<Pass>& passes) {
-  const std::size_t shares = round.groups.size();
-  Pass* open = nullptr;
-  for (std::size_t share = 0; share < shares; ++share) {
-    const std::optional<LightGroup>& group = round.groups[share];
-    if (!group || group->formula != formula) continue;
-    if (!open || open->lights.size() + group->records.size() > kLightsInBlock) {
-      passes.push_back({.round = &round, .formula = formula, .lights = {}, .of_shares = {}});
-      open = &passes.back();
-      open->of_shares.resize(shares);
-    }
-    open->of_shares[share] = {open->lights.size(), group->records.size()};
-    open->lights.insert(open->lights.end(), group->records.begin(), group->records.end());
-  }
-}
-
-void Interleaving::add(const GBuffer& whole, const Pass& pass, bool first) {
-  std::vector<LightRecord> lights = pass.lights;
-  lights.resize(kLightsInBlock);
-  lights_.write(std::span<const LightRecord>(lights));
-  lights_.bind_as_uniforms(kLightsBinding);
-  of_shares_.write(std::span<const std::uint32_t>(&pass.of_shares[0].x, 2 * pass.of_shares.size()));
-  const gl::Program& program = add_lights_[static_cast<std::size_t>(pass.formula)];
+void Interleaving::add_to_tiles(const Round& round, bool first) {
+  const gl::Program& program = add_shares_[static_cast<std::size_t>(round.formula)];
+  set_in(program, round, first);
   program.set("u_plane_distance", plane_distance_);
-  program.set("u_points", 0, whole.points);
-  program.set("u_reflectances", 1, whole.reflectances);
-  program.set("u_shares", 2, pass.round->shares);
-  program.set("u_masks", 3, pass.round->masks);
-  program.set("u_lights_of", 4, of_shares_);
-  program.set("u_first_lights", first ? 1 : 0);
-  irradiance_[0].set_in(program, 5);
+  program.set("u_tiles", 2, planes_);
+  program.set("u_joins", 3, joins_);
+  tile_irradiance_[0].set_in(program, 4);
+  tile_irradiance_[1].framebuffer.bind();
+  gl::draw_full_screen(no_vertices_);
+  std::swap(tile_irradiance_[0], tile_irradiance_[1]);
+}
+
+void Interleaving::add_to_pixels(const Round& round, bool first) {
+  const gl::Program& program = add_lights_[static_cast<std::size_t>(round.formula)];
+  set_in(program, round, first);
+  program.set("u_plane_distance", plane_distance_);
+  program.set("u_points", 2, whole_.points);
+  program.set("u_reflectances", 3, whole_.reflectances);
+  irradiance_[0].set_in(program, 4);
   irradiance_[1].framebuffer.bind();
   gl::draw_full_screen(no_vertices_);
   std::swap(irradiance_[0], irradiance_[1]);
 }
 
-void Interleaving::filter(const GBuffer& whole, const View& view) {
-  const gl::Texture& all_lights = rounds_.back().shares;
-  find_tiles_.set("u_plane_distance", plane_distance_);
-  find_tiles_.set("u_points", 0, whole.points);
-  tile_framebuffer_.bind();
-  gl::draw_full_screen(no_vertices_);
-
-  join_tiles_.set("u_plane_distance", plane_distance_);
-  join_tiles_.set("u_tiles", 0, tiles_);
-  join_tiles_.set("u_shares", 1, all_lights);
-  join_framebuffer_.bind();
-  gl::draw_full_screen(no_vertices_);
-
-  add_rows_.set("u_joins", 0, joins_);
-  add_rows_.set("u_shares", 1, all_lights);
-  rows_.framebuffer.bind();
-  gl::draw_full_screen(no_vertices_);
-
-  std::vector<Pass> passes;
-  for (const Round& round : rounds_) {
-    for (int i = 0; i < kLightFormulas; ++i) {
-      append_passes(round, static_cast<LightFormula>(i), passes);
-    }
+/// The irradiance of all pixels, by what is known of tiles and by the first of the rounds.
+void Interleaving::fill(const View& view, std::size_t rounds) {
+  if (rounds == 0) {
+    irradiance_[0].framebuffer.bind();
+    const float none[4] = {};
+    for (int colour = 0; colour < 3; ++colour) glClearBufferfv(GL_COLOR, colour, none);
+    return;
   }
+  find_middles_.set("u_tiles", 0, planes_);
+  find_middles_.set("u_joins", 1, joins_);
+  tile_irradiance_[0].set_in(find_middles_, 2);
+  middles_framebuffer_.bind();
+  gl::draw_full_screen(no_vertices_);
 
-  // Smooth tiles, into what the last of the passes over the others will draw into.
-  irradiance_[passes.size() % 2].framebuffer.bind();
+  // Into what the last of the rounds will draw into.
+  irradiance_[rounds % 2].framebuffer.bind();
   apply({.stencil = StencilUse::kMark, .reference = 1}, view);
   glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(view), 0);
-  add_columns_.set("u_joins", 0, joins_);
-  rows_.set_in(add_columns_, 1);
+  fill_smooth_.set("u_middles", 0, middles_);
   gl::draw_full_screen(no_vertices_);
 
   apply({.stencil = StencilUse::kMatch, .reference = 0}, view);
-  for (const Pass& pass : passes) add(whole, pass, &pass == &passes.front());
+  for (std::size_t i = 0; i < rounds; ++i) add_to_pixels(rounds_[i], i == 0);
   reset_draw_state();
-  gl::check("filtering");
+  gl::check("filling pixels");
+}
+
+void Interleaving::draw(const Camera& camera, const Vec2& offset,
+                        std::span<const LightGroup> groups,
+                        const std::function<bool()>& group_done) {
+  ViewOptions options = view_options_;
+  options.offset = offset;
+  std::vector<View> of_shares;
+  for (int share = 0; share < tile_ * tile_; ++share) {
+    options.first = {share % tile_, share / tile_};
+    options.origin = options.first * share_size_;
+    of_shares.push_back(make_view(camera, options));
+  }
+  options.step = 1;
+  options.first = options.origin = glm::ivec2(0);
+  const View view = make_view(camera, options);
+
+  draw_surfaces(view, of_shares);
+  times_.begin(Stage::kFilter);
+  find_tiles_.set("u_plane_distance", plane_distance_);
+  find_tiles_.set("u_points", 0, whole_.points);
+  planes_framebuffer_.bind();
+  gl::draw_full_screen(no_vertices_);
+  join_tiles_.set("u_plane_distance", plane_distance_);
+  join_tiles_.set("u_tiles", 0, planes_);
+  joins_framebuffer_.bind();
+  gl::draw_full_screen(no_vertices_);
+  times_.end();
+
+  std::size_t rounds = 0;
+  bool go_on = true;
+  while (go_on && !groups.empty()) {
+    const auto end = std::find_if(groups.begin(), groups.end(), [&](const LightGroup& group) {
+      return group.round != groups.front().round;
+    });
+    const auto of_round = groups.first(static_cast<std::size_t>(end - groups.begin()));
+    if (rounds == rounds_.size()) {
+      rounds_.emplace_back(tile_ * share_size_, tile_ * tile_);
+    }
+    look(rounds_[rounds], of_shares, of_round);
+    times_.begin(Stage::kShading);
+    add_to_tiles(rounds_[rounds], rounds == 0);
+    times_.end();
+    ++rounds;
+    for (std::size_t i = 0; i < of_round.size(); ++i) go_on = group_done() && go_on;
+    groups = groups.subspan(of_round.size());
+  }
+  times_.begin(Stage::kFilter);
+  fill(view, rounds);
+  times_.end();
 }
 
 void Interleaving::set_irradiance(const gl::Program& program, int unit) const {

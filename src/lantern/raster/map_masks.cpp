@@ -16,6 +16,14 @@ constexpr int kTile = 4, kGroup = 4 * kTile;
 
 int tiles(int pixels, int tile) { return (pixels + tile - 1) / tile; }
 
+/// The part of a picture of tiles that a part of one of pixels lies in.
+View view_of_tiles(View view, int tile) {
+  const glm::ivec2 end = view.origin + view.size;
+  view.origin /= tile;
+  view.size = glm::ivec2(tiles(end.x, tile), tiles(end.y, tile)) - view.origin;
+  return view;
+}
+
 gl::Program program_of(const gl::ShaderFiles& files, const char* fragment, LightFormula formula,
                        std::vector<gl::Definition> definitions = {}) {
   definitions.push_back({"KIND", std::to_string(static_cast<int>(formula))});
@@ -89,17 +97,19 @@ Bounds MapMasks::bounds_of_tiles() const {
   return bounds;
 }
 
-void MapMasks::ask(const gl::Program& program, const Tiles& tiles) {
+void MapMasks::ask(const gl::Program& program, const Tiles& tiles, const View& view) {
   program.set("u_spheres", 0, tiles.spheres);
   program.set("u_normals", 1, tiles.normals);
   maps_.set_in(program, 2);
   program.set("u_map_blocks", 3, maps_.blocks());
   tiles.told_framebuffer.bind();
+  set_viewport(view);
   gl::draw_full_screen(no_vertices_);
 }
 
-const gl::Texture& MapMasks::draw(const LightGroup& group, const GBuffer& g_buffer,
-                                  const gl::Texture& asked, StageTimes& times) {
+const gl::Texture& MapMasks::draw(const LightGroup& group, const View& view,
+                                  const GBuffer& g_buffer, const gl::Texture& asked,
+                                  StageTimes& times) {
   // Only maps from infinity show what is looked at alone; to read it back takes waiting for the
   // GPU.
   if (group.formula == LightFormula::kDirectional && !receivers_) receivers_ = bounds_of_tiles();
@@ -107,9 +117,9 @@ const gl::Texture& MapMasks::draw(const LightGroup& group, const GBuffer& g_buff
   times.begin(Stage::kMaps);
   const Programs& programs = programs_[static_cast<std::size_t>(group.formula)];
   programs.of_groups.set("u_count", static_cast<int>(group.records.size()));
-  ask(programs.of_groups, groups_);
+  ask(programs.of_groups, groups_, view_of_tiles(view, kGroup));
   programs.of_tiles.set("u_told", 4, groups_.told);
-  ask(programs.of_tiles, tiles_);
+  ask(programs.of_tiles, tiles_, view_of_tiles(view, kTile));
 
   const auto set_points = [&](const gl::Program& program) {
     program.set("u_points", 0, g_buffer.points);
@@ -122,6 +132,7 @@ const gl::Texture& MapMasks::draw(const LightGroup& group, const GBuffer& g_buff
   programs.of_pixels.set("u_told", 5, tiles_.told);
   programs.of_pixels.set("u_mask", 6, asked);
   look_up_framebuffer_.bind();
+  set_viewport(view);
   // The depth says where rays are left to ask.
   apply({.depth = DepthUse::kReplace}, View{});
   gl::draw_full_screen(no_vertices_);
@@ -131,6 +142,7 @@ const gl::Texture& MapMasks::draw(const LightGroup& group, const GBuffer& g_buff
   programs.by_rays.set("u_map_numbers", 5, maps_.numbers());
   programs.by_rays.set("u_triangles", 6, maps_.triangles().corners);
   ray_framebuffer_.bind();
+  set_viewport(view);
   apply({.depth = DepthUse::kTest}, View{});
   gl::draw_full_screen(no_vertices_);
   reset_draw_state();

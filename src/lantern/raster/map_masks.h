@@ -9,6 +9,7 @@
 #include "lantern/raster/shadow_maps.h"
 #include "lantern/raster/stage_times.h"
 #include "lantern/raster/surfaces.h"
+#include "lantern/raster/view.h"
 
 #include <array>
 #include <optional>
@@ -23,8 +24,8 @@ class MapMasks {
   /// The points that the next masks are for.
   void look_at(const GBuffer& g_buffer);
   /// Bit i of the result (RGBA8, the lowest byte in red): whether light i of the group is seen and
-  /// has its bit in `asked`. Draws the group's maps where they are not there.
-  const gl::Texture& draw(const LightGroup& group, const GBuffer& g_buffer,
+  /// has its bit in `asked`; in the view's part. Draws the group's maps where they are not there.
+  const gl::Texture& draw(const LightGroup& group, const View& view, const GBuffer& g_buffer,
                           const gl::Texture& asked, StageTimes& times);
 
  private:
@@ -41,7 +42,7 @@ class MapMasks {
   };
 
   Bounds bounds_of_tiles() const;
-  void ask(const gl::Program& program, const Tiles& tiles);
+  void ask(const gl::Program& program, const Tiles& tiles, const View& view);
 
   ShadowMaps& maps_;
   gl::Program owners_, of_tiles_, of_groups_;

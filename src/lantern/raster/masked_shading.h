@@ -13,26 +13,17 @@
 
 namespace lantern {
 
-struct MaskedShadingOptions {
-  int width, height;      // of the picture
-  GLuint lights_binding;  // of the uniform block with the lights
-  bool tells_lit;         // see copy_to()
-};
-
 class MaskedShading {
  public:
-  MaskedShading(const gl::ShaderFiles& files, const MaskedShadingOptions& options);
+  /// Of pictures of this size, with lights of the uniform block with this binding.
+  MaskedShading(const gl::ShaderFiles& files, int width, int height, GLuint lights_binding);
 
   /// No light.
   void clear();
-  /// And what the lights of the mask's bits give. `view` is that of the mask and says which pixels
-  /// of the G-buffer its pixels are.
-  void add(const LightGroup& group, const GBuffer& g_buffer, const gl::Texture& mask,
-           const View& view);
-  /// All strips into one picture (RGBA32UI), from this pixel on: the bits of three floats and, if
-  /// asked for, one for each light of the last group that would give something, were nothing
-  /// between.
-  void copy_to(const gl::Texture& irradiance, int x = 0, int y = 0) const;
+  /// And what the lights of the mask's bits give.
+  void add(const LightGroup& group, const GBuffer& g_buffer, const gl::Texture& mask);
+  /// All strips into one picture (RGBA32UI): the bits of three floats and 0.
+  void copy_to(const gl::Texture& irradiance) const;
 
  private:
   static constexpr int kStrips = 4;

@@ -17,14 +17,15 @@ float finite(float bound) { return std::min(bound, std::numeric_limits<float>::m
 }  // namespace
 
 std::vector<LightGroup> group_lights(const VirtualLights& lights, std::span<const float> bounds,
-                                     float coordinate_scale) {
+                                     float coordinate_scale, std::size_t most) {
+  assert(most <= kLightsInGroup);
   assert(bounds.empty() || bounds.size() == lights.size());
   std::vector<LightGroup> groups;
   std::array<std::size_t, kLightFormulas> open;  // the group of each formula that is not full
   open.fill(std::numeric_limits<std::size_t>::max());
   const auto add = [&](LightFormula formula, const LightRecord& record, const LightPoint& point) {
     std::size_t& group = open[static_cast<std::size_t>(formula)];
-    if (group >= groups.size() || groups[group].records.size() == kLightsInGroup) {
+    if (group >= groups.size() || groups[group].records.size() == most) {
       group = groups.size();
       groups.push_back({.formula = formula, .records = {}, .points = {}});
     }

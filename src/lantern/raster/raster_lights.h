@@ -28,10 +28,13 @@ struct LightGroup {
   LightFormula formula = LightFormula::kSurface;
   std::vector<LightRecord> records;
   std::vector<LightPoint> points;  // where shadow rays end
+  // Where pixels have lights of their own: which pixel of a tile has these. Groups of one round
+  // have one formula and are of different shares.
+  std::size_t share = 0, round = 0;
 };
 
-/// `bounds` on the geometry term, one for each light, or none.
+/// `bounds` on the geometry term, one for each light, or none; `most` lights in a group.
 std::vector<LightGroup> group_lights(const VirtualLights& lights, std::span<const float> bounds,
-                                     float coordinate_scale);
+                                     float coordinate_scale, std::size_t most = kLightsInGroup);
 
 }  // namespace lantern

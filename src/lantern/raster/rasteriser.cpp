@@ -5,6 +5,7 @@
 #include "lantern/gl/check.h"
 #include "lantern/gl/program.h"
 #include "lantern/raster/interleaving.h"
+#include "lantern/raster/light_shares.h"
 #include "lantern/raster/lighting.h"
 #include "lantern/raster/raster_lights.h"
 #include "lantern/raster/shadow_maps.h"
@@ -38,55 +39,6 @@ std::optional<World> solid_part(const Scene& scene, const World& world) {
   return solid;
 }
 
-VirtualLights subset(const VirtualLights& lights, std::span<const std::uint32_t> chosen) {
-  VirtualLights few;
-  few.paths = lights.paths;
-  few.reflectivity = lights.reflectivity;
-  for (const std::uint32_t i : chosen) {
-    few.position.push_back(lights.position[i]);
-    few.normal.push_back(lights.normal[i]);
-    few.flux.push_back(lights.flux[i]);
-    few.path.push_back(lights.path[i]);
-    few.bounce.push_back(lights.bounce[i]);
-    few.kind.push_back(lights.kind[i]);
-    few.cone.push_back(lights.cone[i]);
-  }
-  return few;
-}
-
-/// Lights and, for each of them, the bound on its geometry term.
-struct Bounded {
-  VirtualLights lights;
-  std::vector<float> bounds;
-};
-
-/// Those that one of `shares` samples is dealt, as strong as all of them together.
-Bounded dealt(const VirtualLights& lights, std::span<const float> bounds, std::size_t shares,
-              std::size_t sample, std::size_t turn) {
-  const std::vector<std::uint32_t> chosen = share_out(lights, shares, turn)[sample];
-  Bounded few = {.lights = subset(lights, chosen), .bounds = {}};
-  for (Rgb& flux : few.lights.flux) flux *= static_cast<float>(shares);
-  if (bounds.empty()) return few;
-  for (const std::uint32_t i : chosen) few.bounds.push_back(bounds[i]);
-  return few;
-}
-
-/// The lights of each pixel of a tile, row by row; a tile of one pixel has them all.
-std::vector<std::vector<LightGroup>> groups_of_tile(const VirtualLights& lights,
-                                                    std::span<const float> bounds, float scale,
-                                                    int tile, std::size_t turn) {
-  if (tile == 1) return {group_lights(lights, bounds, scale)};
-  std::vector<std::vector<LightGroup>> groups;
-  for (const std::vector<std::uint32_t>& chosen :
-       share_out(lights, static_cast<std::size_t>(tile * tile), turn)) {
-    std::vector<float> few_bounds;
-    for (const std::uint32_t i : chosen)
-      few_bounds.push_back(bounds.empty() ? kInfinity : bounds[i]);
-    groups.push_back(group_lights(subset(lights, chosen), few_bounds, scale));
-  }
-  return groups;
-}
-
 /// The way that is asked for or, where depth clamp is missing, the other exact one.
 VolumeMethod method(VolumeMethod asked, const gl::Info& gl) {
   return asked == VolumeMethod::kExact && !gl.has(gl::kDepthClamp) ? VolumeMethod::kZFail : asked;
@@ -98,8 +50,8 @@ LightPoint point_of(const VirtualLights& lights, std::size_t i, float scale) {
     throw Error(fmt::format("there is no light {} to show the volumes of: the last is {}", i,
                             lights.size() - 1));
   }
-  const auto groups =
-      group_lights(subset(lights, std::array{static_cast<std::uint32_t>(i)}), {}, scale);
+  const std::array only{static_cast<std::uint32_t>(i)};
+  const auto groups = group_lights(chosen_of(lights, {}, only).lights, {}, scale);
   if (groups.empty()) throw Error(fmt::format("light {} is black and has no volumes", i));
   return groups.front().points.front();
 }
@@ -111,16 +63,6 @@ struct Target {
 
   Target(gl::Format format, int width, int height)
       : texture(format, width, height), framebuffer({&texture}) {}
-};
-
-/// What a tile of several pixels takes.
-struct Interleaved {
-  GBuffer g_buffer;  // of the whole picture
-  Interleaving interleaving;
-
-  Interleaved(const gl::ShaderFiles& files, const RasterOptions& options, float radius)
-      : g_buffer(options.width, options.height),
-        interleaving(files, options.width, options.height, options.tile, radius) {}
 };
 
 gl::Program resolve_program(const gl::ShaderFiles& files, int tile) {
@@ -140,8 +82,8 @@ struct Rasteriser::State {
   std::optional<World> solid;  // where some of the world has holes
   std::optional<StencilShadows> volumes;
   std::list<ShadowMaps> maps;
-  std::optional<Lighting> lighting;
-  std::optional<Interleaved> interleaved;
+  std::optional<Lighting> lighting;  // or, where pixels have lights of their own,
+  std::optional<Interleaving> interleaving;
   gl::Program resolve;
   gl::Texture irradiance;  // where every pixel has all lights
   Target radiance;
@@ -173,23 +115,26 @@ struct Rasteriser::State {
                         ShadowMapOptions{.range = view_options.range, .casters = casters});
       shadows.maps.push_back(&maps.back());
     }
-    lighting.emplace(surfaces, shadows, times, files,
-                     LightingOptions{.width = view_options.columns(),
-                                     .height = view_options.rows(),
-                                     .tells_lit = with.tile > 1});
-    if (with.tile > 1) interleaved.emplace(files, with, all.bounds.radius());
+    if (with.tile > 1) {
+      interleaving.emplace(surfaces, shadows, times, files, view_options);
+    } else {
+      lighting.emplace(surfaces, shadows, times, files, with.width, with.height);
+    }
   }
 
-  /// The lights of each pixel of a tile in sample number `n`.
-  std::vector<std::vector<LightGroup>> groups(const VirtualLights& lights,
-                                              std::span<const float> bounds, std::size_t n) const {
-    const auto of_tile = [&](const VirtualLights& all, std::span<const float> their_bounds) {
-      return groups_of_tile(all, their_bounds, world.coordinate_scale(), options.tile, n);
+  /// Of sample number `n`.
+  std::vector<LightGroup> groups(const VirtualLights& lights, std::span<const float> bounds,
+                                 std::size_t n) const {
+    const auto of_pixels = [&](const VirtualLights& all, std::span<const float> their_bounds) {
+      const float scale = world.coordinate_scale();
+      const auto shares = static_cast<std::size_t>(options.tile * options.tile);
+      return shares > 1 ? group_shares(all, their_bounds, scale, shares, n)
+                        : group_lights(all, their_bounds, scale);
     };
-    if (!options.deal_lights) return of_tile(lights, bounds);
+    if (!options.deal_lights) return of_pixels(lights, bounds);
     const auto samples = static_cast<std::size_t>(options.samples);
-    const Bounded mine = dealt(lights, bounds, samples, n % samples, n / samples);
-    return of_tile(mine.lights, mine.bounds);
+    const BoundedLights mine = deal(lights, bounds, samples, n % samples, n / samples);
+    return of_pixels(mine.lights, mine.bounds);
   }
 
   /// Of the whole picture.
@@ -200,24 +145,23 @@ struct Rasteriser::State {
     return make_view(camera, whole);
   }
   const GBuffer& whole_g_buffer() const {
-    return interleaved ? interleaved->g_buffer : lighting->g_buffer();
+    return interleaving ? interleaving->g_buffer() : lighting->g_buffer();
   }
 
   /// The radiance of sample number `n` of all pixels.
-  void draw(const Camera& camera, std::span<const std::vector<LightGroup>> groups, std::size_t n,
+  void draw(const Camera& camera, std::span<const LightGroup> groups, std::size_t n,
             const std::function<bool()>& group_done) {
-    const View view = view_of_sample(camera, n);
-    if (interleaved) {
-      draw_shares(camera, view, groups, n, group_done);
+    if (interleaving) {
+      interleaving->draw(camera, place_in_pixel(n), groups, group_done);
     } else {
-      lighting->draw(view, groups[0], group_done);
+      lighting->draw(view_of_sample(camera, n), groups, group_done);
       lighting->shading().copy_to(irradiance);
     }
     times.begin(Stage::kResolve);
     resolve.set("u_reflectances", 0, whole_g_buffer().reflectances);
     resolve.set("u_emissions", 1, whole_g_buffer().emissions);
-    if (interleaved) {
-      interleaved->interleaving.set_irradiance(resolve, 2);
+    if (interleaving) {
+      interleaving->set_irradiance(resolve, 2);
     } else {
       resolve.set("u_irradiance", 2, irradiance);
     }
@@ -225,48 +169,6 @@ struct Rasteriser::State {
     gl::draw_full_screen(no_vertices);
     times.end();
     gl::check("drawing the radiance");
-  }
-
-  void draw_shares(const Camera& camera, const View& view,
-                   std::span<const std::vector<LightGroup>> groups, std::size_t n,
-                   const std::function<bool()>& group_done) {
-    GBuffer& whole = interleaved->g_buffer;
-    Interleaving& interleaving = interleaved->interleaving;
-    times.begin(Stage::kSurfaces);
-    surfaces.draw(view, whole);
-    times.end();
-    std::size_t rounds = 0;
-    for (const std::vector<LightGroup>& of_share : groups) {
-      rounds = std::max(rounds, of_share.size());
-    }
-    interleaving.begin(rounds);
-    ViewOptions of_share = view_options;
-    of_share.offset = place_in_pixel(n);
-    for (of_share.first.y = 0; of_share.first.y < options.tile; ++of_share.first.y) {
-      for (of_share.first.x = 0; of_share.first.x < options.tile; ++of_share.first.x) {
-        const glm::ivec2 share = of_share.first;
-        const View share_view = make_view(camera, of_share);
-        const std::vector<LightGroup>& lights =
-            groups[static_cast<std::size_t>(share.y * options.tile + share.x)];
-        times.begin(Stage::kSurfaces);
-        if (volumes && volumes->needs_depth_of_view()) {
-          surfaces.draw(share_view, lighting->g_buffer());
-        } else {
-          interleaving.split(whole, share_view, lighting->g_buffer(), lighting->takes_g_buffer());
-        }
-        times.end();
-        std::size_t done = 0;
-        lighting->light(share_view, whole, lights, [&] {
-          interleaving.take(share, done, lights[done], *lighting);
-          ++done;
-          return group_done();
-        });
-        interleaving.end(share, lighting->shading());
-      }
-    }
-    times.begin(Stage::kFilter);
-    interleaving.filter(whole, view);
-    times.end();
   }
 };
 
@@ -297,12 +199,11 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
         pass * static_cast<std::size_t>(options.samples) + static_cast<std::size_t>(sample);
     const auto groups = s.groups(lights, bounds, n);
     for (ShadowMaps& maps : s.maps) maps.keep(groups);
-    std::size_t steps = 0, step = 0;
-    for (const auto& of_pixel : groups) steps += of_pixel.size();
+    std::size_t step = 0;
     s.draw(camera, groups, n, [&] {
       const std::size_t done = image.pixels.size() *
-                               (static_cast<std::size_t>(sample) * steps + ++step) /
-                               (static_cast<std::size_t>(options.samples) * steps);
+                               (static_cast<std::size_t>(sample) * groups.size() + ++step) /
+                               (static_cast<std::size_t>(options.samples) * groups.size());
       if (pixels_done) pixels_done(done - std::exchange(reported, done));
       return !stop.load();
     });

@@ -154,12 +154,10 @@ bool ShadowMaps::are_of(const Maps& maps, const LightGroup& group) {
                     group.records.end(), same_place);
 }
 
-void ShadowMaps::keep(std::span<const std::vector<LightGroup>> groups) {
+void ShadowMaps::keep(std::span<const LightGroup> groups) {
   std::erase_if(kept_, [&](const Maps& maps) {
-    return std::none_of(groups.begin(), groups.end(), [&](const std::vector<LightGroup>& of_view) {
-      return std::any_of(of_view.begin(), of_view.end(),
-                         [&](const LightGroup& group) { return are_of(maps, group); });
-    });
+    return std::none_of(groups.begin(), groups.end(),
+                        [&](const LightGroup& group) { return are_of(maps, group); });
   });
 }
 

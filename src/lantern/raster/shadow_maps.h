@@ -42,8 +42,8 @@ class ShadowMaps {
   ShadowMaps(const Scene& scene, const World& world, const Surfaces& surfaces,
              const gl::ShaderFiles& files, const ShadowMapOptions& options);
 
-  /// Forgets the maps of all lights but these, the groups of one or several views.
-  void keep(std::span<const std::vector<LightGroup>> groups);
+  /// Forgets the maps of all lights but these.
+  void keep(std::span<const LightGroup> groups);
   /// Draws the group's maps unless they are there still. Those from infinity show the box of a grid
   /// around the points that will ask, `receivers`.
   void draw(const LightGroup& group, const Bounds& receivers, StageTimes& times);

@@ -7,18 +7,54 @@
 #include "lantern/raster/draw_state.h"
 #include "lantern/raster/raster_lights.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 
 namespace lantern {
 namespace {
 
-/// Each vertex where it is and once more, for the shader to move to infinity.
-std::vector<Vec3> doubled(const std::vector<Vec3>& vertices) {
+/// Which of a vertex's three one is: see shaders/shadow_volume.vert.glsl.
+enum class Place : std::uint32_t { kHere, kAtBox, kAtInfinity };
+constexpr std::uint32_t kPlaces = 3;
+
+std::uint32_t vertex_at(std::uint32_t vertex, Place place) {
+  return kPlaces * vertex + static_cast<std::uint32_t>(place);
+}
+
+std::vector<Vec3> once_for_each_place(const std::vector<Vec3>& vertices) {
   std::vector<Vec3> result;
-  result.reserve(2 * vertices.size());
-  for (const Vec3& v : vertices) result.insert(result.end(), 2, v);
+  result.reserve(kPlaces * vertices.size());
+  for (const Vec3& v : vertices) result.insert(result.end(), kPlaces, v);
   return result;
+}
+
+/// Encloses all that is seen, and the ways to it.
+Bounds box_around(const World& world, const Vec3& eye) {
+  Bounds box = world.bounds;
+  box.add(eye);
+  const float margin = 1e-3f * box.radius();
+  box.low -= margin;
+  box.high += margin;
+  return box;
+}
+
+/// By which of its six sides the ray from the light through the vertex leaves the box.
+int exit_side(const Vec3& vertex, const LightPoint& light, const Bounds& box) {
+  const Vec3 way = light.w * vertex - Vec3(light);
+  int nearest = 0;
+  float least = kInfinity;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float room =
+        way[axis] > 0.0f ? box.high[axis] - vertex[axis] : vertex[axis] - box.low[axis];
+    const float steps = room / std::max(std::abs(way[axis]), 1e-30f);
+    if (steps < least) {
+      least = steps;
+      nearest = 2 * axis + (way[axis] > 0.0f ? 1 : 0);
+    }
+  }
+  return nearest;
 }
 
 /// Moves a light by less than half of what keeps it off its surface, each time elsewhere.
@@ -32,9 +68,18 @@ LightPoint nudged(const LightPoint& light, float scale, std::uint64_t attempt) {
   return light + Vec4(way * (kSmall * length), 0.0f);
 }
 
-void append_quad(const VolumeEdge& edge, std::vector<std::uint32_t>& indices) {
-  const std::uint32_t from = 2 * edge.from, to = 2 * edge.to;
-  indices.insert(indices.end(), {to, from, from + 1, to, from + 1, to + 1});
+void append_quad(const VolumeEdge& edge, Place start, Place end,
+                 std::vector<std::uint32_t>& indices) {
+  const std::uint32_t from = vertex_at(edge.from, start), to = vertex_at(edge.to, start);
+  const std::uint32_t far_from = vertex_at(edge.from, end), far_to = vertex_at(edge.to, end);
+  indices.insert(indices.end(), {to, from, far_from, to, far_from, far_to});
+}
+
+/// The part that is in the box. Between ends on two of its sides is a corner of it.
+void append_quad_in_box(const VolumeEdge& edge, bool has_corner,
+                        std::vector<std::uint32_t>& indices) {
+  append_quad(edge, Place::kHere, Place::kAtBox, indices);
+  if (has_corner) append_quad(edge, Place::kAtBox, Place::kAtInfinity, indices);
 }
 
 /// The volumes' ends: the casters themselves and, at infinity, their shadows' far ends. `outward`:
@@ -44,25 +89,18 @@ void append_caps(const EdgeList& list, const LightPoint& light, bool outward,
   const std::vector<std::int8_t> facing = list.facing(light);
   for (std::size_t t = 0; t < facing.size(); ++t) {
     const uvec3 caster = list.casters()[t];
-    const std::uint32_t far = (facing[t] > 0) == outward ? 0 : 1;
-    indices.insert(indices.end(), {2 * caster.x + far, 2 * caster.y + far, 2 * caster.z + far});
+    const Place place = (facing[t] > 0) == outward ? Place::kHere : Place::kAtInfinity;
+    for (int corner = 0; corner < 3; ++corner) {
+      indices.push_back(vertex_at(caster[corner], place));
+    }
   }
 }
 
-struct Range {
-  std::size_t first = 0, count = 0;
-};
-
-void draw_indices(const Range& range) {
+void draw_indices(const IndexRange& range) {
   if (range.count == 0) return;
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.count), GL_UNSIGNED_INT,
                  reinterpret_cast<const void*>(range.first * sizeof(std::uint32_t)));
 }
-
-/// What is drawn of one light's volumes.
-struct Pieces {
-  Range quads, outward_caps, inward_caps;
-};
 
 }  // namespace
 
@@ -76,7 +114,7 @@ StencilShadows::StencilShadows(const World& world, const gl::ShaderFiles& files,
       take_(files, "shaders/full_screen.vert.glsl", "shaders/constant.frag.glsl"),
       all_walls_(find_walls(world)),
       whole_(casters_),
-      vertices_(std::span<const Vec3>(doubled(whole_.vertices()))),
+      vertices_(std::span<const Vec3>(once_for_each_place(whole_.vertices()))),
       indices_(std::span<const std::uint32_t>()),
       array_({{.location = 0, .buffer = &vertices_}}, &indices_) {}
 
@@ -122,29 +160,70 @@ void StencilShadows::take(std::size_t light, int reference, const View& view) co
   gl::draw_full_screen(no_vertices_);
 }
 
-void StencilShadows::draw(std::span<const LightPoint> lights, const View& view,
-                          const gl::Framebuffer& framebuffer, StageTimes& times) {
-  assert(lights.size() <= kLightsInGroup);
-  const Vec3 eye = view.eye;
+/// Counts a light's volumes in the stencil and takes its bit where it is seen.
+void StencilShadows::draw_light(const Prepared& prepared, std::size_t light,
+                                const View& view) const {
+  volume_.set("u_light", prepared.light);
+  array_.bind();
+  if (method_ == VolumeMethod::kZFail) {
+    DrawState state = {
+        .depth = DepthUse::kTest, .stencil = StencilUse::kCountHidden, .colour = false};
+    apply(state, view);
+    draw_indices(prepared.quads);
+    draw_indices(prepared.outward_caps);
+    state.swap_sides = true;
+    apply(state, view);
+    draw_indices(prepared.inward_caps);
+    take(light, 0, view);
+    return;
+  }
+  apply({.depth = DepthUse::kTest,
+         .stencil = StencilUse::kCountPassing,
+         .colour = false,
+         .depth_clamp = method_ == VolumeMethod::kExact},
+        view);
+  draw_indices(prepared.quads);
+  // The count starts at 0, not at that of the eye: it is complete where it is the negative.
+  constexpr int kStencilValues = 256;
+  const int around_eye = prepared.volumes.eye_count % kStencilValues;
+  take(light, (kStencilValues - around_eye) % kStencilValues, view);
+}
+
+void StencilShadows::draw(std::span<const LightsInView> views, const gl::Framebuffer& framebuffer,
+                          StageTimes& times) {
+  std::vector<Prepared> prepared;
+  for (const LightsInView& of_view : views) {
+    assert(of_view.lights.size() <= kLightsInGroup);
+    for (const LightPoint& light : of_view.lights) prepared.emplace_back().light = light;
+  }
+  const Vec3 eye = views.front().view.eye;
   choose_walls(eye);
-  std::vector<Prepared> prepared(lights.size());
-  parallel_for(lights.size(), 1, [&](std::size_t i) { prepared[i] = prepare(lights[i], eye); });
+  parallel_for(prepared.size(), 1,
+               [&](std::size_t i) { prepared[i] = prepare(prepared[i].light, eye); });
 
   std::vector<std::uint32_t> indices;
-  std::vector<Pieces> pieces;
   const auto range = [&](const auto& append) {
     const std::size_t first = indices.size();
     append();
-    return Range{first, indices.size() - first};
+    return IndexRange{first, indices.size() - first};
   };
-  for (const Prepared& p : prepared) {
-    Pieces& of_light = pieces.emplace_back();
-    of_light.quads = range([&] {
-      for (const VolumeEdge& edge : p.volumes.edges) append_quad(edge, indices);
+  const Bounds box = box_around(world_, eye);
+  for (Prepared& p : prepared) {
+    p.quads = range([&] {
+      for (const VolumeEdge& edge : p.volumes.edges) {
+        if (method_ != VolumeMethod::kExact) {
+          append_quad(edge, Place::kHere, Place::kAtInfinity, indices);
+          continue;
+        }
+        const auto side = [&](std::uint32_t vertex) {
+          return exit_side(whole_.vertices()[vertex], p.light, box);
+        };
+        append_quad_in_box(edge, side(edge.from) != side(edge.to), indices);
+      }
     });
     if (method_ != VolumeMethod::kZFail) continue;
-    of_light.outward_caps = range([&] { append_caps(*p.list, p.light, true, indices); });
-    of_light.inward_caps = range([&] { append_caps(*p.list, p.light, false, indices); });
+    p.outward_caps = range([&] { append_caps(*p.list, p.light, true, indices); });
+    p.inward_caps = range([&] { append_caps(*p.list, p.light, false, indices); });
   }
   indices_.write(std::span<const std::uint32_t>(indices));
 
@@ -154,33 +233,15 @@ void StencilShadows::draw(std::span<const LightPoint> lights, const View& view,
   const float none[4] = {};
   glClearBufferfv(GL_COLOR, 0, none);
   volume_.set("u_eye", eye);
-  volume_.set("u_clip", view.clip);
-  for (std::size_t i = 0; i < lights.size(); ++i) {
-    if (prepared[i].volumes.dark) continue;
-    volume_.set("u_light", prepared[i].light);
-    array_.bind();
-    if (method_ == VolumeMethod::kZFail) {
-      DrawState state = {
-          .depth = DepthUse::kTest, .stencil = StencilUse::kCountHidden, .colour = false};
-      apply(state, view);
-      draw_indices(pieces[i].quads);
-      draw_indices(pieces[i].outward_caps);
-      state.swap_sides = true;
-      apply(state, view);
-      draw_indices(pieces[i].inward_caps);
-      take(i, 0, view);
-      continue;
+  volume_.set("u_low", box.low);
+  volume_.set("u_high", box.high);
+  auto next = prepared.cbegin();
+  for (const LightsInView& of_view : views) {
+    set_viewport(of_view.view);
+    volume_.set("u_clip", of_view.view.clip);
+    for (std::size_t light = 0; light < of_view.lights.size(); ++light, ++next) {
+      if (!next->volumes.dark) draw_light(*next, light, of_view.view);
     }
-    apply({.depth = DepthUse::kTest,
-           .stencil = StencilUse::kCountPassing,
-           .colour = false,
-           .depth_clamp = method_ == VolumeMethod::kExact},
-          view);
-    draw_indices(pieces[i].quads);
-    // The count starts at 0, not at that of the eye: it is complete where it is the negative.
-    constexpr int kStencilValues = 256;
-    const int around_eye = prepared[i].volumes.eye_count % kStencilValues;
-    take(i, (kStencilValues - around_eye) % kStencilValues, view);
   }
   reset_draw_state();
   times.end();
@@ -192,7 +253,9 @@ void StencilShadows::draw_sides(const LightPoint& light, const View& view,
   choose_walls(view.eye);
   const Prepared prepared = prepare(light, view.eye);
   std::vector<std::uint32_t> indices;
-  for (const VolumeEdge& edge : prepared.volumes.edges) append_quad(edge, indices);
+  for (const VolumeEdge& edge : prepared.volumes.edges) {
+    append_quad(edge, Place::kHere, Place::kAtInfinity, indices);
+  }
   indices_.write(std::span<const std::uint32_t>(indices));
   framebuffer.bind();
   reset_draw_state();
@@ -201,6 +264,8 @@ void StencilShadows::draw_sides(const LightPoint& light, const View& view,
   apply({.depth = DepthUse::kTest, .add = true, .depth_clamp = method_ == VolumeMethod::kExact},
         view);
   sides_.set("u_eye", view.eye);
+  sides_.set("u_low", Vec3(0.0f));
+  sides_.set("u_high", Vec3(0.0f));
   sides_.set("u_clip", view.clip);
   sides_.set("u_light", prepared.light);
   array_.bind();

@@ -17,17 +17,32 @@
 
 namespace lantern {
 
+/// Lights, 32 at most, and from where their shadows are seen.
+struct LightsInView {
+  const View& view;
+  std::span<const LightPoint> lights;
+};
+
+struct IndexRange {
+  std::size_t first = 0, count = 0;
+};
+
 class StencilShadows {
  public:
   /// Keeps references. `casters`: those of the world's triangles that cast shadows; none: all.
   StencilShadows(const World& world, const gl::ShaderFiles& files, VolumeMethod method,
                  const World* casters = nullptr);
 
-  /// Bit i of `mask` (RGBA8, the lowest byte in red): whether lights[i], of 32 at most, is seen.
-  /// `framebuffer` draws into it with the depth and stencil of a G-buffer that was drawn with the
-  /// same view; the stencil must be 0, and is left so. Drawing alone is timed.
+  /// Bit i of a mask (RGBA8, the lowest byte in red): whether light i is seen; each view has its
+  /// part of it. `framebuffer` draws into it with the depth and stencil of a G-buffer that was
+  /// drawn with the same views; the stencil must be 0, and is left so. Drawing alone is timed.
+  void draw(std::span<const LightsInView> views, const gl::Framebuffer& framebuffer,
+            StageTimes& times);
   void draw(std::span<const LightPoint> lights, const View& view,
-            const gl::Framebuffer& framebuffer, StageTimes& times);
+            const gl::Framebuffer& framebuffer, StageTimes& times) {
+    const LightsInView all{view, lights};
+    draw(std::span(&all, 1), framebuffer, times);
+  }
 
   /// Whether the depth that volumes are drawn against must be of that very view, to its last bit.
   bool needs_depth_of_view() const { return method_ == VolumeMethod::kZFail; }
@@ -41,10 +56,12 @@ class StencilShadows {
     LightPoint light{0.0f};
     ShadowVolumes volumes;
     const EdgeList* list = nullptr;
+    IndexRange quads, outward_caps, inward_caps;
   };
 
   void choose_walls(const Vec3& eye);
   Prepared prepare(const LightPoint& light, const Vec3& eye) const;
+  void draw_light(const Prepared& prepared, std::size_t light, const View& view) const;
   void take(std::size_t light, int reference, const View& view) const;
 
   const World& world_;

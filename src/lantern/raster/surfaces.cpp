@@ -145,8 +145,12 @@ void Surfaces::set_view(const gl::Program& program, const View& view) const {
 
 void Surfaces::draw(const View& view, const GBuffer& target) const {
   target.framebuffer.bind();
+  set_viewport(view);
   apply({.depth = DepthUse::kDraw}, view);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(view.origin.x, view.origin.y, view.size.x, view.size.y);
   glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(view), 0);
+  glDisable(GL_SCISSOR_TEST);
 
   apply({.depth = DepthUse::kDraw}, view);
   set_view(surface_, view);
@@ -161,7 +165,7 @@ void Surfaces::draw(const View& view, const GBuffer& target) const {
       set_view(program, view);
       set_opacity(program, batch.material, 2);
       program.set("u_seed", view.seed);
-      program.set("u_first_pixel", view.first);
+      program.set("u_first_pixel", view.first - view.step * view.origin);
       program.set("u_pixel_step", view.step);
     }
     program.set("u_reflectance", material.reflectance);
@@ -181,7 +185,8 @@ void Surfaces::draw(const View& view, const GBuffer& target) const {
   sky_.set("u_far", far_depth(view));
   sky_.set("u_radiance", scene_.sky ? scene_.sky->radiance : Rgb(0.0f));
   if (has_sky_texture(scene_)) {
-    sky_.set("u_corner", view.corner);
+    const Vec2 origin(view.origin);
+    sky_.set("u_corner", view.corner - view.step_x * origin.x - view.step_y * origin.y);
     sky_.set("u_step_x", view.step_x);
     sky_.set("u_step_y", view.step_y);
     set_look_up(sky_, "u_sky", "u_look_up", 0, scene_.sky->texture);

@@ -30,7 +30,7 @@ class Surfaces {
   /// Keeps a reference to `scene`.
   Surfaces(const Scene& scene, const World& world, const gl::ShaderFiles& files);
 
-  /// All of it, with the sky behind; the stencil becomes 0.
+  /// All of it, with the sky behind, into the view's part; its stencil becomes 0.
   void draw(const View& view, const GBuffer& target) const;
 
   /// The uniforms of shaders/opacity.glsl for this material, on a texture unit.

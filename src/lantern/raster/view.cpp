@@ -39,6 +39,8 @@ View make_view(const Camera& camera, const ViewOptions& options) {
           (eye.direction(0.0f, 1.0f) - corner) * step,
           options.first,
           options.step,
+          options.origin,
+          {options.columns(), options.rows()},
           static_cast<std::uint32_t>(hash(std::bit_cast<std::uint32_t>(options.offset.x),
                                           std::bit_cast<std::uint32_t>(options.offset.y)))};
 }

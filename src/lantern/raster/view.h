@@ -21,7 +21,8 @@ struct ViewOptions {
   // The framebuffer holds pixel (x, y) + step * (column, row) of the picture.
   int step = 1;
   glm::ivec2 first{0};
-  float radius = 1.0f;  // of the scene; closer than a small part of it depth is not told apart
+  glm::ivec2 origin{0};  // texel of the framebuffer that this picture begins at
+  float radius = 1.0f;   // of the scene; closer than a small part of it depth is not told apart
   ClipRange range = ClipRange::kFarIs0;
 
   int columns() const { return (width + step - 1) / step; }
@@ -35,7 +36,8 @@ struct View {
   Vec3 corner, step_x, step_y;  // ray of column i, row j: corner + i step_x + j step_y
   glm::ivec2 first;             // pixel of the picture: first + step * (i, j)
   int step;
-  std::uint32_t seed;  // of random numbers that only what shares its place in the pixel shares
+  glm::ivec2 origin, size;  // of the framebuffer's texels, those that are drawn to
+  std::uint32_t seed;       // of random numbers that only what shares its place in the pixel shares
 };
 
 View make_view(const Camera& camera, const ViewOptions& options);

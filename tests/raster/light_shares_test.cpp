@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // How lights are shared out, without GL.
-#include "lantern/raster/interleaving.h"
+#include "lantern/raster/light_shares.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// The lights of a round, as many as go into one block, and which of them are seen.
+#include "shaders/lights.glsl"
+
+uniform sampler2D u_masks;             // of the shares' pictures
+uniform highp usampler2D u_lights_of;  // of each share the first and how many
+
+uint mask_at(ivec2 place) {
+  vec4 bytes = texelFetch(u_masks, place, 0);
+  uvec2 words = uvec2(bytes.rb * 255.0 + bytes.ga * 65280.0 + 0.5);
+  return words.x | (words.y << 16);
+}
+
+uvec4 bit(uvec4 bits, int i) { return (bits >> uint(i)) & 1u; }

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// The irradiance in the middle of each tile by all lights, and whether it is rough.
+#include "shaders/interleaved.glsl"
+
+uniform highp usampler2D u_tiles;  // see shaders/interleaved_tiles.frag.glsl
+uniform highp usampler2D u_joins;
+uniform sampler2D u_red, u_green, u_blue, u_changes;  // of four tiles of a row
+
+layout(location = 0) out uvec4 o_middle;  // irradiance's bits, what is known of the tile
+
+vec3 irradiance_of(ivec2 tile) {
+  ivec2 quad = ivec2(tile.x / 4, tile.y);
+  int i = tile.x % 4;
+  return vec3(texelFetch(u_red, quad, 0)[i], texelFetch(u_green, quad, 0)[i],
+              texelFetch(u_blue, quad, 0)[i]);
+}
+
+/// How much a neighbour is brighter or darker, if it is one.
+float step_to(ivec2 tile, bool is_joined, float here) {
+  return is_joined ? abs(dot(irradiance_of(tile), vec3(1.0)) - here) : 0.0;
+}
+
+void main() {
+  ivec2 tile = ivec2(gl_FragCoord.xy);
+  uint joins = texelFetch(u_joins, tile, 0).r;
+  bool before = (joins & kBefore) != 0u, after = (joins & kAfter) != 0u;
+  bool above = (joins & kAbove) != 0u, below = (joins & kBelow) != 0u;
+  vec3 irradiance = irradiance_of(tile);
+  float here = dot(irradiance, vec3(1.0));
+  float most = max(max(step_to(tile - ivec2(1, 0), before, here),
+                       step_to(tile + ivec2(1, 0), after, here)),
+                   max(step_to(tile - ivec2(0, 1), above, here),
+                       step_to(tile + ivec2(0, 1), below, here)));
+  most = max(most, texelFetch(u_changes, ivec2(tile.x / 4, tile.y), 0)[tile.x % 4]);
+  // More than this is an edge of a shadow or something near.
+  const float kSmooth = 0.2;
+  bool is_smooth = (before || after) && (above || below) && most <= kSmooth * here;
+  bool is_sky = texelFetch(u_tiles, tile, 0) == uvec4(0u);
+  o_middle = uvec4(floatBitsToUint(irradiance), joins | (is_smooth || is_sky ? 0u : kRough));
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// Which lights pixels see, as the bits of a mask, by all that casts shadows: volumes, maps, or
+// both.
+#pragma once
+
+#include "lantern/gl/objects.h"
+#include "lantern/gl/program.h"
+#include "lantern/raster/map_masks.h"
+#include "lantern/raster/raster_lights.h"
+#include "lantern/raster/shadow_maps.h"
+#include "lantern/raster/stage_times.h"
+#include "lantern/raster/stencil_shadows.h"
+#include "lantern/raster/surfaces.h"
+#include "lantern/raster/view.h"
+
+#include <list>
+#include <span>
+#include <vector>
+
+namespace lantern {
+
+/// Who says which lights are seen; where both are there both must say so.
+struct Shadows {
+  StencilShadows* volumes = nullptr;
+  std::vector<ShadowMaps*> maps = {};
+};
+
+/// A group of lights and from where it is looked at.
+struct GroupInView {
+  const View& view;
+  const LightGroup& group;
+};
+
+class LightMasks {
+ public:
+  /// Of pictures with this depth and stencil. Keeps references to it and to what `shadows` points
+  /// to.
+  LightMasks(const Shadows& shadows, StageTimes& times, const gl::ShaderFiles& files,
+             const gl::Texture& depth);
+
+  /// Whether look_at() must be called for each picture, or its depth suffices.
+  bool asks_points() const { return !map_masks_.empty(); }
+  /// Whether that depth must be of the very views, to its last bit.
+  bool needs_depth_of_views() const {
+    return shadows_.volumes && shadows_.volumes->needs_depth_of_view();
+  }
+  /// Keeps a reference until the next.
+  void look_at(const GBuffer& picture);
+
+  /// Bit i (RGBA8, the lowest byte in red): whether light i of the group is seen. Each view has its
+  /// own part of the picture and is asked for one group.
+  const gl::Texture& draw(std::span<const GroupInView> views);
+
+ private:
+  Shadows shadows_;
+  StageTimes& times_;
+  gl::Texture mask_;
+  gl::Framebuffer framebuffer_;
+  std::list<MapMasks> map_masks_;
+  const GBuffer* picture_ = nullptr;
+};
+
+}  // namespace lantern
