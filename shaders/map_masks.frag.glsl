@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which of up to 32 lights each pixel sees: what maps tell of its tile or, where that is nothing, of
-// the four texels around its point.
+// Which of up to 32 lights each pixel sees: what maps tell of its tile or, where that is nothing,
+// of the four texels around its point.
 #include "shaders/map_receivers.glsl"
 #include "shaders/map_tiles.glsl"
 #include "shaders/shadow_maps.glsl"
@@ -30,7 +30,7 @@ int look_up(int light, Receiver p) {
   ivec2 block = block_of(at.texel);
   if (is_at_border(block, block)) return kOpen;
   uvec2 sees = texelFetch(u_map_blocks, corner_of_map(light) + block, 0).xy;
-  if ((sees.x == p.owner.z || sees.x == 0u) && near_of(sees.y) > at.depth) return kSeen;
+  if ((sees.x == p.its_patch || sees.x == 0u) && near_of(sees.y) > at.depth) return kSeen;
   // All is further before the point than the point's own surface comes within the block.
   return (at.depth - far_of(sees.y)) * cosine > at.reach * at.scale ? kShadowed : kOpen;
 }

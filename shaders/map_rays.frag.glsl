@@ -12,8 +12,12 @@ uniform highp sampler2D u_triangles;
 
 layout(location = 0) out vec4 o_mask;
 
-/// Beyond its border an octahedron goes on at the same border, mirrored.
+/// Beyond its border an octahedron goes on at the same border, mirrored. Half of one ends there,
+/// and no block lies beyond.
 ivec2 wrapped_texel(ivec2 texel) {
+#if KIND == 0
+  return texel;
+#endif
   ivec2 inside = clamp(texel, ivec2(0), ivec2(u_map_size - 1));
   if (inside.x != texel.x) return ivec2(inside.x, u_map_size - 1 - inside.y);
   if (inside.y != texel.y) return ivec2(u_map_size - 1 - inside.x, inside.y);
@@ -25,6 +29,7 @@ struct Question {
   vec3 way;
   float reach;      // see MapPoint
   uvec4 triangles;  // what the four texels around see that may be in the way
+  uvec4 left;       // of these
   uint nearest;     // what the one sees in which the point is
   uint next, last;  // the triangle beyond an edge of the last one, which is asked first, unless 0
   int steps;        // that it is away from a texel's
@@ -35,10 +40,10 @@ const int kMostSteps = 2;
 /// What a texel sees, 0 for what is not in the way of any light.
 uint seen_in(ivec2 corner, ivec2 texel, bool is_nearest, Receiver p) {
   uint seen = texelFetch(u_map_numbers, corner + wrapped_texel(texel), 0).x & (kNumber | kHoles);
-  bool is_owner = (seen & kNumber) - p.owner.x < p.owner.y;
+  bool is_own = (seen & kNumber) - p.first < p.count;
   // What has holes stops what goes through this very texel.
   bool is_other_texel = (seen & kHoles) != 0u && !is_nearest;
-  return is_owner || is_other_texel ? 0u : seen;
+  return is_own || is_other_texel ? 0u : seen;
 }
 
 Question question_for(int light, Receiver p) {
@@ -48,7 +53,7 @@ Question question_for(int light, Receiver p) {
   MapPoint at = find_in_map(map, p.position, asked.way);
   asked.reach = at.reach;
   ivec2 first = block_of(at.texel), corner = corner_of_map(light);
-  ivec2 off = ivec2(floor(at.texel)) - first;
+  ivec2 off = clamp(ivec2(floor(at.texel)) - first, 0, 1);
   int nearest = off.x + 2 * off.y;
   uvec4 seen;
   seen.x = seen_in(corner, first, nearest == 0, p);
@@ -60,13 +65,13 @@ Question question_for(int light, Receiver p) {
   if (seen.y == seen.x) seen.y = 0u;
   if (seen.z == seen.x || seen.z == seen.y) seen.z = 0u;
   if (seen.w == seen.x || seen.w == seen.y || seen.w == seen.z) seen.w = 0u;
-  asked.triangles = seen;
+  asked.triangles = asked.left = seen;
   asked.next = 0u;
   return asked;
 }
 
 bool is_answered(Question open) {
-  uvec4 left = open.triangles;
+  uvec4 left = open.left;
   return (left.x | left.y | left.z | left.w | open.next) == 0u;
 }
 
@@ -80,20 +85,20 @@ uint next_of(inout Question open) {
   }
   open.steps = 0;
   open.last = 0u;
-  uvec4 left = open.triangles;
+  uvec4 left = open.left;
   if (left.x != 0u) {
-    open.triangles.x = 0u;
+    open.left.x = 0u;
     return left.x;
   }
   if (left.y != 0u) {
-    open.triangles.y = 0u;
+    open.left.y = 0u;
     return left.y;
   }
   if (left.z != 0u) {
-    open.triangles.z = 0u;
+    open.left.z = 0u;
     return left.z;
   }
-  open.triangles.w = 0u;
+  open.left.w = 0u;
   return left.w;
 }
 
@@ -102,7 +107,8 @@ uint next_of(inout Question open) {
 bool is_in_way(inout Question open, Receiver p) {
   uint seen = next_of(open), number = seen & kNumber;
   vec3 way = open.way;
-  vec4 a = corner_of(u_triangles, number - 1u, 0), b = corner_of(u_triangles, number - 1u, 1), c = corner_of(u_triangles, number - 1u, 2);
+  vec4 a = corner_of(u_triangles, number - 1u, 0);
+  vec4 b = corner_of(u_triangles, number - 1u, 1), c = corner_of(u_triangles, number - 1u, 2);
   vec3 ab = b.xyz - a.xyz, ac = c.xyz - a.xyz, from_a = p.position - a.xyz;
   vec3 across = cross(way, ac), turned = cross(from_a, ab);
   float volume = dot(ab, across), part = 1.0 / volume;
@@ -130,7 +136,10 @@ bool is_in_way(inout Question open, Receiver p) {
   // Folded back under the last one: the ray passes by the rim of the mesh.
   float to_last = open.last == uint(a.w) ? v_of_c : open.last == uint(b.w) ? v_of_a : v_of_b;
   if (open.steps > 0 && to_last < 0.0) return false;
-  open.next = uint(least == v_of_a ? b.w : least == v_of_b ? c.w : a.w);
+  // The texels' triangles are asked anyhow.
+  uint next = uint(least == v_of_a ? b.w : least == v_of_b ? c.w : a.w);
+  bool is_asked = any(equal(open.triangles, uvec4(next))), is_own = next - p.first < p.count;
+  open.next = is_asked || is_own ? 0u : next;
   open.last = number;
   return false;
 }

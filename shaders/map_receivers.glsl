@@ -3,19 +3,26 @@
 #include "shaders/octahedral.glsl"
 
 uniform highp usampler2D u_points;
-uniform highp usampler2D u_reflectances;
-uniform highp usampler2D u_owners;  // see shaders/map_owners.frag.glsl
+// The first triangle that is not in the way and 1, or 0 where nothing is seen; how many, kHasPatch;
+// geometric normal.
+uniform highp usampler2D u_receivers;
+
+const uint kHasPatch = 0x80000000u;  // they are all of a patch
 
 struct Receiver {
   vec3 position, geometric;
-  uvec3 owner;
+  uint first, count;  // of the triangles that are not in the way
+  uint its_patch;     // which these are, or 0
 };
 
 Receiver receiver_at(ivec2 pixel) {
+  uvec4 bits = texelFetch(u_receivers, pixel, 0);
   Receiver p;
   p.position = uintBitsToFloat(texelFetch(u_points, pixel, 0).xyz);
-  p.geometric = unpack_unit(texelFetch(u_reflectances, pixel, 0).w);
-  p.owner = texelFetch(u_owners, pixel, 0).xyz;
+  p.geometric = unpack_unit(bits.z);
+  p.first = bits.x;
+  p.count = bits.y & ~kHasPatch;
+  p.its_patch = (bits.y & kHasPatch) != 0u ? bits.x : 0u;
   return p;
 }
 

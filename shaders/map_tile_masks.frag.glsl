@@ -34,8 +34,8 @@ void add(uvec2 window, uint own, inout Sees sees) {
 Sees look(int light, ivec2 low, ivec2 high, int level, uint own) {
   ivec2 first = min(low >> level, (u_map_size >> level) - 2);
   ivec2 last = max(first, (high >> level) - 1);
-  ivec2 corner = corner_of_level(level, ivec2(u_map_size * kMapsAcross, textureSize(u_map_blocks, 0).y)) +
-                 (corner_of_map(light) >> level);
+  ivec2 size = ivec2(u_map_size * kMapsAcross, textureSize(u_map_blocks, 0).y);
+  ivec2 corner = corner_of_level(level, size) + (corner_of_map(light) >> level);
   first += corner;
   last += corner;
   Sees sees = Sees(uintBitsToFloat(kInfinitelyFar << 16), 0.0);
@@ -88,7 +88,8 @@ int told(int light, vec4 sphere, vec3 normal, float spread, float thickness, uin
   int level = max(exponent_of(0.3333 * float(steps)) + 1, 0);
   Sees sees = look(light, low, high, level, own);
   if (sees.near > at.depth + most) return kSeen;
-  float before = at.depth - most - sees.far, own_reach = (1.0 + max(reach.x, reach.y)) * at.reach * at.scale;
+  float before = at.depth - most - sees.far;
+  float own_reach = (1.0 + max(reach.x, reach.y)) * at.reach * at.scale;
   if (before * max(cosine - slack, 0.0) > own_reach) return kShadowed;
   return kOpen;
 }

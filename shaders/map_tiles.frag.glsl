@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What encloses the points of each tile of pixels, and their normals.
+#include "shaders/map_receivers.glsl"
 #include "shaders/map_tiles.glsl"
-#include "shaders/octahedral.glsl"
-
-uniform highp usampler2D u_points;
-uniform highp usampler2D u_reflectances;
-uniform highp usampler2D u_owners;
-uniform sampler2D u_emissions;
 
 layout(location = 0) out uvec4 o_sphere;  // bits of floats: centre, radius
 // A unit vector; how far others are from it, how far points are off its plane through the centre, as
@@ -14,41 +9,37 @@ layout(location = 0) out uvec4 o_sphere;  // bits of floats: centre, radius
 layout(location = 1) out uvec4 o_normals;
 
 void main() {
-  ivec2 first = kTile * ivec2(gl_FragCoord.xy);
-  ivec2 end = min(first + kTile, textureSize(u_points, 0));
+  ivec2 first = kTile * ivec2(gl_FragCoord.xy), last = textureSize(u_points, 0) - 1;
   const float kFar = 1e30;
   vec3 low = vec3(kFar), high = vec3(-kFar), normals = vec3(0.0);
-  uint common_patch = 0u;
+  uint common_patch = 0u, there = 0u;  // bits of pixels that see something
   bool is_common = true;
-  for (int y = first.y; y < end.y; ++y) {
-    for (int x = first.x; x < end.x; ++x) {
-      ivec2 at = ivec2(x, y);
-      if (texelFetch(u_emissions, at, 0).a == 0.0) continue;
-      vec3 position = uintBitsToFloat(texelFetch(u_points, at, 0).xyz);
-      uint its_patch = texelFetch(u_owners, at, 0).z;
-      if (common_patch == 0u) common_patch = its_patch;
-      is_common = is_common && its_patch != 0u && its_patch == common_patch;
-      low = min(low, position);
-      high = max(high, position);
-      normals += unpack_unit(texelFetch(u_reflectances, at, 0).w);
-    }
+  for (int i = 0; i < kTile * kTile; ++i) {
+    ivec2 at = min(first + ivec2(i % kTile, i / kTile), last);
+    Receiver p = receiver_at(at);
+    if (p.first == 0u) continue;
+    there |= 1u << uint(i);
+    if (common_patch == 0u) common_patch = p.its_patch;
+    is_common = is_common && p.its_patch != 0u && p.its_patch == common_patch;
+    low = min(low, p.position);
+    high = max(high, p.position);
+    normals += p.geometric;
   }
   o_sphere = uvec4(floatBitsToUint(vec4(0.0, 0.0, 0.0, -1.0)));
   o_normals = uvec4(0u);
-  if (low.x > high.x) return;
+  if (there == 0u) return;
   vec3 centre = 0.5 * (low + high);
   uint packed_normal = pack_unit(normals);
   vec3 normal = unpack_unit(packed_normal);
   float radius = 0.0, thickness = 0.0, spread = 0.0;
-  for (int y = first.y; y < end.y; ++y) {
-    for (int x = first.x; x < end.x; ++x) {
-      ivec2 at = ivec2(x, y);
-      if (texelFetch(u_emissions, at, 0).a == 0.0) continue;
-      vec3 off = uintBitsToFloat(texelFetch(u_points, at, 0).xyz) - centre;
-      radius = max(radius, length(off));
-      thickness = max(thickness, abs(dot(normal, off)));
-      spread = max(spread, length(unpack_unit(texelFetch(u_reflectances, at, 0).w) - normal));
-    }
+  for (int i = 0; i < kTile * kTile; ++i) {
+    if ((there >> uint(i) & 1u) == 0u) continue;
+    ivec2 at = min(first + ivec2(i % kTile, i / kTile), last);
+    Receiver p = receiver_at(at);
+    vec3 off = p.position - centre;
+    radius = max(radius, length(off));
+    thickness = max(thickness, abs(dot(normal, off)));
+    spread = max(spread, length(p.geometric - normal));
   }
   o_sphere = floatBitsToUint(vec4(centre, radius));
   o_normals = uvec4(packed_normal, floatBitsToUint(spread), floatBitsToUint(thickness),

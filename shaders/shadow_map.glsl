@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A shadow map is a square of u_map_size texels a side. All directions unfold into it as an octahedron
-// does, those of a light that shines to one side as one half of it, turned by an eighth. Each face is
-// a perspective picture: what is straight stays straight.
+// A shadow map is a square of u_map_size texels a side. All directions unfold into it as an
+// octahedron does, those of a light that shines to one side as one half of it, turned by an eighth.
+// Each face is a perspective picture: what is straight stays straight.
 uniform int u_map_size;
 
 /// Of a texel's centre, twice.
@@ -18,8 +18,8 @@ const uint kHoles = 0x10000000u;
 const uint kInfinitelyFar = 0x7f00u;
 const uint kNoPatch = 0xffffffffu;  // of what has holes, and of several
 
-// The same of larger windows: those of level n are 2 << n texels wide and begin at every (1 << n)th;
-// they stand beside the blocks, which are level 0, one below the other.
+// The same of larger windows: those of level n are 2 << n texels wide and begin at every (1 << n)th.
+// Levels stand beside the blocks, which are level 0, one after the other upwards.
 const int kMapLevels = 5;
 
 ivec2 corner_of_level(int level, ivec2 size_of_blocks) {

@@ -33,7 +33,8 @@ uniform vec4 u_emission_look_up;
 
 layout(location = 0) out uvec4 o_point;       // position's bits, shading normal
 layout(location = 1) out uvec4 o_reflectance; // its bits, geometric normal
-layout(location = 2) out vec4 o_emission;     // radiance, number of the triangle and 1
+layout(location = 2) out vec4 o_emission;     // radiance; number of the triangle and 1, negative if
+                                              // its back is seen
 
 #if TEXTURED
 vec3 looked_up(sampler2D image, vec4 how) {
@@ -72,5 +73,5 @@ void main() {
   o_reflectance = uvec4(floatBitsToUint(reflectance), pack_unit(geometric * side));
   // Floats count no further; half a number is no triangle's.
   const uint kCounted = 0xffffffu;
-  o_emission = vec4(emission, v_triangle < kCounted ? float(v_triangle + 1u) : 0.5);
+  o_emission = vec4(emission, side * (v_triangle < kCounted ? float(v_triangle + 1u) : 0.5));
 }

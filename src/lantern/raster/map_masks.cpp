@@ -47,32 +47,29 @@ MapMasks::Tiles::Tiles(int width, int height)
 
 MapMasks::MapMasks(ShadowMaps& maps, const gl::ShaderFiles& files, int width, int height)
     : maps_(maps),
-      owners_(files, "shaders/full_screen.vert.glsl", "shaders/map_owners.frag.glsl"),
+      of_pixels_(files, "shaders/full_screen.vert.glsl", "shaders/map_receivers.frag.glsl"),
       of_tiles_(files, "shaders/full_screen.vert.glsl", "shaders/map_tiles.frag.glsl"),
       of_groups_(files, "shaders/full_screen.vert.glsl", "shaders/map_tile_groups.frag.glsl"),
       programs_{Programs(files, LightFormula::kSurface), Programs(files, LightFormula::kPunctual),
                 Programs(files, LightFormula::kDirectional)},
       groups_(tiles(width, kGroup), tiles(height, kGroup)),
       tiles_(tiles(width, kTile), tiles(height, kTile)),
-      owner_(gl::Format::kRgba32ui, width, height),
+      receivers_(gl::Format::kRgba32ui, width, height),
       mask_(gl::Format::kRgba8, width, height),
       left_(gl::Format::kRg32ui, width, height),
       is_left_(gl::Format::kDepth32f, width, height),
-      owner_framebuffer_({&owner_}),
+      receiver_framebuffer_({&receivers_}),
       look_up_framebuffer_({&mask_, &left_}, &is_left_),
       ray_framebuffer_({&mask_}, &is_left_) {}
 
 void MapMasks::look_at(const GBuffer& g_buffer) {
-  owners_.set("u_emissions", 0, g_buffer.emissions);
-  owners_.set("u_reflectances", 1, g_buffer.reflectances);
-  owners_.set("u_patches", 2, maps_.triangles().owners);
-  owners_.set("u_triangles", 3, maps_.triangles().corners);
-  owner_framebuffer_.bind();
+  of_pixels_.set("u_emissions", 0, g_buffer.emissions);
+  of_pixels_.set("u_reflectances", 1, g_buffer.reflectances);
+  of_pixels_.set("u_patches", 2, maps_.triangles().owners);
+  receiver_framebuffer_.bind();
   gl::draw_full_screen(no_vertices_);
   of_tiles_.set("u_points", 0, g_buffer.points);
-  of_tiles_.set("u_reflectances", 1, g_buffer.reflectances);
-  of_tiles_.set("u_owners", 2, owner_);
-  of_tiles_.set("u_emissions", 3, g_buffer.emissions);
+  of_tiles_.set("u_receivers", 1, receivers_);
   tiles_.framebuffer.bind();
   gl::draw_full_screen(no_vertices_);
   of_groups_.set("u_spheres", 0, tiles_.spheres);
@@ -80,7 +77,7 @@ void MapMasks::look_at(const GBuffer& g_buffer) {
   groups_.framebuffer.bind();
   gl::draw_full_screen(no_vertices_);
   gl::check("drawing what encloses tiles");
-  receivers_.reset();
+  box_.reset();
 }
 
 Bounds MapMasks::bounds_of_tiles() const {
@@ -112,8 +109,8 @@ const gl::Texture& MapMasks::draw(const LightGroup& group, const View& view,
                                   StageTimes& times) {
   // Only maps from infinity show what is looked at alone; to read it back takes waiting for the
   // GPU.
-  if (group.formula == LightFormula::kDirectional && !receivers_) receivers_ = bounds_of_tiles();
-  maps_.draw(group, receivers_.value_or(Bounds{}), times);
+  if (group.formula == LightFormula::kDirectional && !box_) box_ = bounds_of_tiles();
+  maps_.draw(group, box_.value_or(Bounds{}), times);
   times.begin(Stage::kMaps);
   const Programs& programs = programs_[static_cast<std::size_t>(group.formula)];
   programs.of_groups.set("u_count", static_cast<int>(group.records.size()));
@@ -123,14 +120,13 @@ const gl::Texture& MapMasks::draw(const LightGroup& group, const View& view,
 
   const auto set_points = [&](const gl::Program& program) {
     program.set("u_points", 0, g_buffer.points);
-    program.set("u_reflectances", 1, g_buffer.reflectances);
-    program.set("u_owners", 2, owner_);
-    maps_.set_in(program, 3);
+    program.set("u_receivers", 1, receivers_);
+    maps_.set_in(program, 2);
   };
   set_points(programs.of_pixels);
-  programs.of_pixels.set("u_map_blocks", 4, maps_.blocks());
-  programs.of_pixels.set("u_told", 5, tiles_.told);
-  programs.of_pixels.set("u_mask", 6, asked);
+  programs.of_pixels.set("u_map_blocks", 3, maps_.blocks());
+  programs.of_pixels.set("u_told", 4, tiles_.told);
+  programs.of_pixels.set("u_mask", 5, asked);
   look_up_framebuffer_.bind();
   set_viewport(view);
   // The depth says where rays are left to ask.
@@ -138,9 +134,9 @@ const gl::Texture& MapMasks::draw(const LightGroup& group, const View& view,
   gl::draw_full_screen(no_vertices_);
 
   set_points(programs.by_rays);
-  programs.by_rays.set("u_left", 4, left_);
-  programs.by_rays.set("u_map_numbers", 5, maps_.numbers());
-  programs.by_rays.set("u_triangles", 6, maps_.triangles().corners);
+  programs.by_rays.set("u_left", 3, left_);
+  programs.by_rays.set("u_map_numbers", 4, maps_.numbers());
+  programs.by_rays.set("u_triangles", 5, maps_.triangles().corners);
   ray_framebuffer_.bind();
   set_viewport(view);
   apply({.depth = DepthUse::kTest}, View{});

@@ -45,12 +45,12 @@ class MapMasks {
   void ask(const gl::Program& program, const Tiles& tiles, const View& view);
 
   ShadowMaps& maps_;
-  gl::Program owners_, of_tiles_, of_groups_;
+  gl::Program of_pixels_, of_tiles_, of_groups_;
   std::array<Programs, kLightFormulas> programs_;
   Tiles groups_, tiles_;
-  gl::Texture owner_, mask_, left_, is_left_;
-  gl::Framebuffer owner_framebuffer_, look_up_framebuffer_, ray_framebuffer_;
-  std::optional<Bounds> receivers_;  // once they are asked for
+  gl::Texture receivers_, mask_, left_, is_left_;
+  gl::Framebuffer receiver_framebuffer_, look_up_framebuffer_, ray_framebuffer_;
+  std::optional<Bounds> box_;  // around the points, once it is asked for
   gl::VertexArray no_vertices_;
 };
 

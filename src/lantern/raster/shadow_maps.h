@@ -31,7 +31,7 @@ enum class MapCasters { kSolid, kWithHoles };  // by the material's has_holes()
 
 struct ShadowMapOptions {
   int size = 256;  // texels a side of an octahedron, a multiple of 64; see size_of() for others
-  std::size_t bytes = 768ull << 20;  // that maps may take; the group in use always has its own
+  std::size_t bytes = 1024ull << 20;  // that maps may take; the group in use always has its own
   ClipRange range = ClipRange::kFarIs0;
   MapCasters casters = MapCasters::kSolid;
 };
