@@ -12,6 +12,10 @@ LightMasks::LightMasks(const Shadows& shadows, StageTimes& times, const gl::Shad
   for (ShadowMaps* maps : shadows.maps) {
     map_masks_.emplace_back(*maps, files, depth.width(), depth.height());
   }
+  // Volumes draw all of it anew each time.
+  const float all_seen[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+  framebuffer_.bind();
+  glClearBufferfv(GL_COLOR, 0, all_seen);
 }
 
 void LightMasks::look_at(const GBuffer& picture) {
@@ -26,10 +30,6 @@ const gl::Texture& LightMasks::draw(std::span<const GroupInView> views) {
       lights.push_back({of_view.view, of_view.group.points});
     }
     shadows_.volumes->draw(lights, framebuffer_, times_);
-  } else {
-    const float all_seen[4] = {1.0f, 1.0f, 1.0f, 1.0f};
-    framebuffer_.bind();
-    glClearBufferfv(GL_COLOR, 0, all_seen);
   }
   const gl::Texture* mask = &mask_;
   for (MapMasks& masks : map_masks_) {
