@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Which of up to 32 lights each pixel sees: what maps tell of its tile or, where that is nothing,
-// of the four texels around its point.
-#include "shaders/map_receivers.glsl"
-#include "shaders/map_tiles.glsl"
-#include "shaders/shadow_maps.glsl"
-#include "shaders/triangles.glsl"
+// Which of up to 32 lights a pixel sees of whose tile maps do not tell all: what they tell of the
+// four texels around its point and, where that is nothing, rays.
+#include "shaders/map_rays.glsl"
+#include "shaders/map_told.glsl"
 
-uniform highp usampler2D u_told;  // see shaders/map_tile_masks.frag.glsl
 uniform highp usampler2D u_map_blocks;  // see shaders/shadow_map.glsl
-uniform sampler2D u_mask;         // lights that are asked for
 
 layout(location = 0) out vec4 o_mask;
-layout(location = 1) out uvec4 o_left;  // seen, and left open: 1 of depth, else 0
 
 const int kShadowed = 0;
 const int kSeen = 1;
@@ -37,21 +32,20 @@ int look_up(int light, Receiver p) {
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
-  uvec4 bytes = uvec4(texelFetch(u_mask, at, 0) * 255.0 + 0.5);
-  uint asked = bytes.r | (bytes.g << 8) | (bytes.b << 16) | (bytes.a << 24);
-  uvec2 told = texelFetch(u_told, at / kTile, 0).xy & asked;
-  uint seen = told.x, unknown = told.y, open = 0u;
   Receiver p = receiver_at(at);
-  // Mesa runs what is in a loop once more than `while` says.
-  for (;;) {
+  uvec2 told = told_of(at);
+  uint seen = told.x, unknown = told.y, open = 0u;
+  do {
     uint bit = lowest(unknown);
     int answer = look_up(number_of(bit), p);
     if (answer == kSeen) seen |= bit;
     if (answer == kOpen) open |= bit;
     unknown ^= bit;
-    if (unknown == 0u) break;
-  }
+  } while (unknown != 0u);
+  do {
+    uint bit = lowest(open);
+    if (sees(number_of(bit), p)) seen |= bit;
+    open ^= bit;
+  } while (open != 0u);
   o_mask = bytes_of(seen);
-  o_left = uvec4(seen, open, 0u, 0u);
-  gl_FragDepth = open != 0u ? 1.0 : 0.0;
 }

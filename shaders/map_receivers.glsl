@@ -25,7 +25,3 @@ Receiver receiver_at(ivec2 pixel) {
   p.its_patch = (bits.y & kHasPatch) != 0u ? bits.x : 0u;
   return p;
 }
-
-vec4 bytes_of(uint mask) {
-  return vec4(uvec4(mask, mask >> 8, mask >> 16, mask >> 24) & 255u) / 255.0;
-}

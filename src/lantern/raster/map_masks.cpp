@@ -35,8 +35,7 @@ gl::Program program_of(const gl::ShaderFiles& files, const char* fragment, Light
 MapMasks::Programs::Programs(const gl::ShaderFiles& files, LightFormula formula)
     : of_groups(program_of(files, "shaders/map_tile_masks.frag.glsl", formula, {{"GROUPS", "1"}})),
       of_tiles(program_of(files, "shaders/map_tile_masks.frag.glsl", formula, {{"GROUPS", "0"}})),
-      of_pixels(program_of(files, "shaders/map_masks.frag.glsl", formula)),
-      by_rays(program_of(files, "shaders/map_rays.frag.glsl", formula)) {}
+      of_pixels(program_of(files, "shaders/map_masks.frag.glsl", formula)) {}
 
 MapMasks::Tiles::Tiles(int width, int height)
     : spheres(gl::Format::kRgba32ui, width, height),
@@ -50,17 +49,16 @@ MapMasks::MapMasks(ShadowMaps& maps, const gl::ShaderFiles& files, int width, in
       of_pixels_(files, "shaders/full_screen.vert.glsl", "shaders/map_receivers.frag.glsl"),
       of_tiles_(files, "shaders/full_screen.vert.glsl", "shaders/map_tiles.frag.glsl"),
       of_groups_(files, "shaders/full_screen.vert.glsl", "shaders/map_tile_groups.frag.glsl"),
+      told_(files, "shaders/full_screen.vert.glsl", "shaders/map_told.frag.glsl"),
       programs_{Programs(files, LightFormula::kSurface), Programs(files, LightFormula::kPunctual),
                 Programs(files, LightFormula::kDirectional)},
       groups_(tiles(width, kGroup), tiles(height, kGroup)),
       tiles_(tiles(width, kTile), tiles(height, kTile)),
       receivers_(gl::Format::kRgba32ui, width, height),
       mask_(gl::Format::kRgba8, width, height),
-      left_(gl::Format::kRg32ui, width, height),
-      is_left_(gl::Format::kDepth32f, width, height),
+      is_open_(gl::Format::kDepth32f, width, height),
       receiver_framebuffer_({&receivers_}),
-      look_up_framebuffer_({&mask_, &left_}, &is_left_),
-      ray_framebuffer_({&mask_}, &is_left_) {}
+      mask_framebuffer_({&mask_}, &is_open_) {}
 
 void MapMasks::look_at(const GBuffer& g_buffer) {
   of_pixels_.set("u_emissions", 0, g_buffer.emissions);
@@ -118,27 +116,22 @@ const gl::Texture& MapMasks::draw(const LightGroup& group, const View& view,
   programs.of_tiles.set("u_told", 4, groups_.told);
   ask(programs.of_tiles, tiles_, view_of_tiles(view, kTile));
 
-  const auto set_points = [&](const gl::Program& program) {
-    program.set("u_points", 0, g_buffer.points);
-    program.set("u_receivers", 1, receivers_);
-    maps_.set_in(program, 2);
+  const auto set_told = [&](const gl::Program& program) {
+    program.set("u_told", 0, tiles_.told);
+    program.set("u_mask", 1, asked);
   };
-  set_points(programs.of_pixels);
-  programs.of_pixels.set("u_map_blocks", 3, maps_.blocks());
-  programs.of_pixels.set("u_told", 4, tiles_.told);
-  programs.of_pixels.set("u_mask", 5, asked);
-  look_up_framebuffer_.bind();
+  set_told(told_);
+  mask_framebuffer_.bind();
   set_viewport(view);
-  // The depth says where rays are left to ask.
   apply({.depth = DepthUse::kReplace}, View{});
   gl::draw_full_screen(no_vertices_);
-
-  set_points(programs.by_rays);
-  programs.by_rays.set("u_left", 3, left_);
-  programs.by_rays.set("u_map_numbers", 4, maps_.numbers());
-  programs.by_rays.set("u_triangles", 5, maps_.triangles().corners);
-  ray_framebuffer_.bind();
-  set_viewport(view);
+  set_told(programs.of_pixels);
+  programs.of_pixels.set("u_points", 2, g_buffer.points);
+  programs.of_pixels.set("u_receivers", 3, receivers_);
+  maps_.set_in(programs.of_pixels, 4);
+  programs.of_pixels.set("u_map_blocks", 5, maps_.blocks());
+  programs.of_pixels.set("u_map_numbers", 6, maps_.numbers());
+  programs.of_pixels.set("u_triangles", 7, maps_.triangles().corners);
   apply({.depth = DepthUse::kTest}, View{});
   gl::draw_full_screen(no_vertices_);
   reset_draw_state();

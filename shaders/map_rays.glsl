@@ -6,11 +6,8 @@
 #include "shaders/shadow_maps.glsl"
 #include "shaders/triangles.glsl"
 
-uniform highp usampler2D u_left;  // see shaders/map_masks.frag.glsl
 uniform highp usampler2D u_map_numbers;
 uniform highp sampler2D u_triangles;
-
-layout(location = 0) out vec4 o_mask;
 
 /// Beyond its border an octahedron goes on at the same border, mirrored. Half of one ends there,
 /// and no block lies beyond.
@@ -152,17 +149,4 @@ bool sees(int light, Receiver p) {
     shadowed = !is_answered(open) && is_in_way(open, p);
     if (shadowed || is_answered(open)) return !shadowed;
   }
-}
-
-void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  Receiver p = receiver_at(at);
-  uvec2 left = texelFetch(u_left, at, 0).xy;
-  uint seen = left.x, open = left.y;
-  do {
-    uint bit = lowest(open);
-    if (sees(number_of(bit), p)) seen |= bit;
-    open ^= bit;
-  } while (open != 0u);
-  o_mask = bytes_of(seen);
 }
