@@ -94,4 +94,6 @@ void reset_draw_state() {
 
 float far_depth(const View& view) { return view.near_is_1 ? 0.0f : 1.0f; }
 
+float near_z(const View& view) { return view.near_is_1 ? 1.0f : -1.0f; }
+
 }  // namespace lantern

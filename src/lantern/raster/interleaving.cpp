@@ -84,8 +84,8 @@ void Interleaving::TileQuads::set_in(const gl::Program& program, int unit) const
   program.set("u_changes", unit + 3, changes);
 }
 
-Interleaving::Round::Round(const glm::ivec2& size, int shares)
-    : masks(gl::Format::kRgba8, size.x, size.y),
+Interleaving::Round::Round(const gl::Texture& depth, int shares)
+    : masks(depth),
       lights_of(gl::Format::kRg32ui, shares, 1),
       lights(std::span<const LightRecord>()) {}
 
@@ -102,7 +102,7 @@ Interleaving::Interleaving(const Surfaces& surfaces, const Shadows& shadows, Sta
       plane_distance_(1e-2f * options.radius),
       whole_(options.width, options.height),
       shares_(tile_ * share_size_, asks_more_than_depth(shadows)),
-      masks_(shadows, times, files, shares_.depth()),
+      masks_(shadows, times, files, shares_.depth().width(), shares_.depth().height()),
       split_(program_of(files, "shaders/interleaved_split.frag.glsl", tile_,
                         {{"POINTS", shares_.all ? "1" : "0"}})),
       find_tiles_(program_of(files, "shaders/interleaved_tiles.frag.glsl", tile_)),
@@ -167,16 +167,12 @@ void Interleaving::look(Round& round, std::span<const View> of_shares,
   round.formula = groups.front().formula;
   round.lights.write(std::span<const LightRecord>(lights));
   round.lights_of.write(std::span<const std::uint32_t>(lights_of));
-  const gl::Framebuffer masks({&masks_.draw(in_view)});
-  masks.bind();
-  round.masks.bind(0);
-  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, round.masks.width(), round.masks.height());
-  gl::check("keeping a round of masks");
+  masks_.draw(in_view, round.masks);
 }
 
 void Interleaving::set_in(const gl::Program& program, const Round& round, bool first) const {
   round.lights.bind_as_uniforms(kLightsBinding);
-  program.set("u_masks", 0, round.masks);
+  program.set("u_masks", 0, round.masks.mask);
   program.set("u_lights_of", 1, round.lights_of);
   program.set("u_first_round", first ? 1 : 0);
 }
@@ -267,7 +263,7 @@ void Interleaving::draw(const Camera& camera, const Vec2& offset,
     });
     const auto of_round = groups.first(static_cast<std::size_t>(end - groups.begin()));
     if (rounds == rounds_.size()) {
-      rounds_.emplace_back(tile_ * share_size_, tile_ * tile_);
+      rounds_.emplace_back(shares_.depth(), tile_ * tile_);
     }
     look(rounds_[rounds], of_shares, of_round);
     times_.begin(Stage::kShading);

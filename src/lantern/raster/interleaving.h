@@ -68,10 +68,11 @@ class Interleaving {
   };
   /// A group of each share.
   struct Round {
-    gl::Texture masks, lights_of;
+    MaskPicture masks;
+    gl::Texture lights_of;
     gl::Buffer lights;
     LightFormula formula = LightFormula::kSurface;
-    Round(const glm::ivec2& size, int shares);
+    Round(const gl::Texture& depth, int shares);
   };
 
   void draw_surfaces(const View& view, std::span<const View> of_shares);

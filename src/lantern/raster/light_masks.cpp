@@ -4,18 +4,9 @@
 namespace lantern {
 
 LightMasks::LightMasks(const Shadows& shadows, StageTimes& times, const gl::ShaderFiles& files,
-                       const gl::Texture& depth)
-    : shadows_(shadows),
-      times_(times),
-      mask_(gl::Format::kRgba8, depth.width(), depth.height()),
-      framebuffer_({&mask_}, &depth) {
-  for (ShadowMaps* maps : shadows.maps) {
-    map_masks_.emplace_back(*maps, files, depth.width(), depth.height());
-  }
-  // Volumes draw all of it anew each time.
-  const float all_seen[4] = {1.0f, 1.0f, 1.0f, 1.0f};
-  framebuffer_.bind();
-  glClearBufferfv(GL_COLOR, 0, all_seen);
+                       int width, int height)
+    : shadows_(shadows), times_(times) {
+  for (ShadowMaps* maps : shadows.maps) map_masks_.emplace_back(*maps, files, width, height);
 }
 
 void LightMasks::look_at(const GBuffer& picture) {
@@ -23,15 +14,19 @@ void LightMasks::look_at(const GBuffer& picture) {
   for (MapMasks& masks : map_masks_) masks.look_at(picture);
 }
 
-const gl::Texture& LightMasks::draw(std::span<const GroupInView> views) {
+const gl::Texture& LightMasks::draw(std::span<const GroupInView> views, const MaskPicture& to) {
   if (shadows_.volumes) {
     std::vector<LightsInView> lights;
     for (const GroupInView& of_view : views) {
       lights.push_back({of_view.view, of_view.group.points});
     }
-    shadows_.volumes->draw(lights, framebuffer_, times_);
+    shadows_.volumes->draw(lights, to.framebuffer, times_);
+  } else {
+    const float all_seen[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+    to.framebuffer.bind();
+    glClearBufferfv(GL_COLOR, 0, all_seen);
   }
-  const gl::Texture* mask = &mask_;
+  const gl::Texture* mask = &to.mask;
   for (MapMasks& masks : map_masks_) {
     const gl::Texture* next = mask;
     for (const GroupInView& of_view : views) {

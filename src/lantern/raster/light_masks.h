@@ -31,12 +31,20 @@ struct GroupInView {
   const LightGroup& group;
 };
 
+/// Bit i (RGBA8, the lowest byte in red): whether light i of a group is seen.
+struct MaskPicture {
+  gl::Texture mask;
+  gl::Framebuffer framebuffer;
+  /// Of a picture with this depth and stencil, which must outlive it.
+  explicit MaskPicture(const gl::Texture& depth)
+      : mask(gl::Format::kRgba8, depth.width(), depth.height()), framebuffer({&mask}, &depth) {}
+};
+
 class LightMasks {
  public:
-  /// Of pictures with this depth and stencil. Keeps references to it and to what `shadows` points
-  /// to.
-  LightMasks(const Shadows& shadows, StageTimes& times, const gl::ShaderFiles& files,
-             const gl::Texture& depth);
+  /// Of pictures of this size. Keeps references to what `shadows` points to.
+  LightMasks(const Shadows& shadows, StageTimes& times, const gl::ShaderFiles& files, int width,
+             int height);
 
   /// Whether look_at() must be called for each picture, or its depth suffices.
   bool asks_points() const { return !map_masks_.empty(); }
@@ -47,15 +55,12 @@ class LightMasks {
   /// Keeps a reference until the next.
   void look_at(const GBuffer& picture);
 
-  /// Bit i (RGBA8, the lowest byte in red): whether light i of the group is seen. Each view has its
-  /// own part of the picture and is asked for one group.
-  const gl::Texture& draw(std::span<const GroupInView> views);
+  /// Each view has its own part of the picture, in which it is asked for one group.
+  void draw(std::span<const GroupInView> views, const MaskPicture& to);
 
  private:
   Shadows shadows_;
   StageTimes& times_;
-  gl::Texture mask_;
-  gl::Framebuffer framebuffer_;
   std::list<MapMasks> map_masks_;
   const GBuffer* picture_ = nullptr;
 };

@@ -16,7 +16,8 @@ Lighting::Lighting(const Surfaces& surfaces, const Shadows& shadows, StageTimes&
     : surfaces_(surfaces),
       times_(times),
       g_buffer_(width, height),
-      masks_(shadows, times, files, g_buffer_.depth),
+      masks_(shadows, times, files, width, height),
+      mask_(g_buffer_.depth),
       light_block_(std::span<const LightRecord>()),
       shading_(files, width, height, kLightsBinding) {}
 
@@ -29,19 +30,20 @@ void Lighting::draw(const View& view, std::span<const LightGroup> groups,
   shading_.clear();
   for (const LightGroup& group : groups) {
     const GroupInView in_view{view, group};
-    add(group, masks_.draw(std::span(&in_view, 1)));
+    masks_.draw(std::span(&in_view, 1), mask_);
+    add(group);
     if (!group_done()) break;
   }
 }
 
 /// What the lights of the mask's bits give.
-void Lighting::add(const LightGroup& group, const gl::Texture& mask) {
+void Lighting::add(const LightGroup& group) {
   std::array<LightRecord, kLightsInGroup> records;
   std::copy(group.records.begin(), group.records.end(), records.begin());
   light_block_.write(std::span<const LightRecord>(records));
   light_block_.bind_as_uniforms(kLightsBinding);
   times_.begin(Stage::kShading);
-  shading_.add(group, g_buffer_, mask);
+  shading_.add(group, g_buffer_, mask_.mask);
   times_.end();
 }
 

@@ -32,12 +32,13 @@ class Lighting {
   const MaskedShading& shading() const { return shading_; }
 
  private:
-  void add(const LightGroup& group, const gl::Texture& mask);
+  void add(const LightGroup& group);
 
   const Surfaces& surfaces_;
   StageTimes& times_;
   GBuffer g_buffer_;
   LightMasks masks_;
+  MaskPicture mask_;
   gl::Buffer light_block_;
   MaskedShading shading_;
 };

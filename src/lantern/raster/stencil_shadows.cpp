@@ -11,6 +11,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace lantern {
 namespace {
@@ -18,15 +19,20 @@ namespace {
 /// Which of a vertex's three one is: see shaders/shadow_volume.vert.glsl.
 enum class Place : std::uint32_t { kHere, kAtBox, kAtInfinity };
 constexpr std::uint32_t kPlaces = 3;
+constexpr int kStencilValues = 256;
 
 std::uint32_t vertex_at(std::uint32_t vertex, Place place) {
   return kPlaces * vertex + static_cast<std::uint32_t>(place);
 }
 
-std::vector<Vec3> once_for_each_place(const std::vector<Vec3>& vertices) {
+/// Once for each place, and at the end the corners of the screen.
+std::vector<Vec3> drawn_vertices(const std::vector<Vec3>& vertices) {
   std::vector<Vec3> result;
-  result.reserve(kPlaces * vertices.size());
+  result.reserve(kPlaces * vertices.size() + 4);
   for (const Vec3& v : vertices) result.insert(result.end(), kPlaces, v);
+  for (const float y : {-1.0f, 1.0f}) {
+    for (const float x : {-1.0f, 1.0f}) result.emplace_back(x, y, 0.0f);
+  }
   return result;
 }
 
@@ -82,6 +88,19 @@ void append_quad_in_box(const VolumeEdge& edge, bool has_corner,
   if (has_corner) append_quad(edge, Place::kAtBox, Place::kAtInfinity, indices);
 }
 
+/// Fronts that cover the screen, or backs if there are less than none of them.
+void append_covers(const EdgeList& list, int count, std::vector<std::uint32_t>& indices) {
+  const auto corner = static_cast<std::uint32_t>(kPlaces * list.vertices().size());
+  for (; count > 0; --count) {
+    indices.insert(indices.end(), {corner, corner + 2, corner + 1});
+    indices.insert(indices.end(), {corner + 1, corner + 2, corner + 3});
+  }
+  for (; count < 0; ++count) {
+    indices.insert(indices.end(), {corner, corner + 1, corner + 2});
+    indices.insert(indices.end(), {corner + 1, corner + 3, corner + 2});
+  }
+}
+
 /// The volumes' ends: the casters themselves and, at infinity, their shadows' far ends. `outward`:
 /// those whose front is the volume's outside, else the others.
 void append_caps(const EdgeList& list, const LightPoint& light, bool outward,
@@ -114,7 +133,7 @@ StencilShadows::StencilShadows(const World& world, const gl::ShaderFiles& files,
       take_(files, "shaders/full_screen.vert.glsl", "shaders/constant.frag.glsl"),
       all_walls_(find_walls(world)),
       whole_(casters_),
-      vertices_(std::span<const Vec3>(once_for_each_place(whole_.vertices()))),
+      vertices_(std::span<const Vec3>(drawn_vertices(whole_.vertices()))),
       indices_(std::span<const std::uint32_t>()),
       array_({{.location = 0, .buffer = &vertices_}}, &indices_) {}
 
@@ -128,88 +147,99 @@ void StencilShadows::choose_walls(const Vec3& eye) {
   inside_.emplace(casters_, walls_);
 }
 
-StencilShadows::Prepared StencilShadows::prepare(const LightPoint& light, const Vec3& eye) const {
+void StencilShadows::find_volumes(Prepared& prepared) const {
+  const Vec3 eye = prepared.view->eye;
+  const LightPoint light = prepared.light;
   const float scale = world_.coordinate_scale();
   // Closer to a quad's plane than this the eye may be on its other side for GL.
   const float clear = 0x1p-20f * scale;
   const VolumeCount count =
       method_ == VolumeMethod::kZFail ? VolumeCount::kPlain : VolumeCount::kHalved;
   constexpr std::uint64_t kAttempts = 8;
-  Prepared result;
   for (std::uint64_t attempt = 0; attempt < kAttempts; ++attempt) {
-    result.light = attempt == 0 ? light : nudged(light, scale, attempt);
+    if (attempt > 0) prepared.light = nudged(light, scale, attempt);
     // From behind one meets also what is outside the walls; the classics know no walls.
-    const bool inside = method_ == VolumeMethod::kExact && is_inside(walls_, result.light);
-    result.list = inside ? &*inside_ : &whole_;
-    result.volumes = result.list->volumes(result.light, eye, count);
-    if (is_clear_of(*result.list, result.volumes, result.light, eye, clear)) break;
+    const bool inside = method_ == VolumeMethod::kExact && is_inside(walls_, prepared.light);
+    prepared.list = inside ? &*inside_ : &whole_;
+    prepared.volumes = prepared.list->volumes(prepared.light, eye, count);
+    if (is_clear_of(*prepared.list, prepared.volumes, prepared.light, eye, clear)) break;
   }
   if (method_ == VolumeMethod::kZPass) {
-    result.volumes.eye_count = 0;
-    result.volumes.dark = false;
+    prepared.volumes.eye_count = 0;
+    prepared.volumes.dark = false;
   }
-  return result;
 }
 
-/// Light number `light` is seen where the stencil is `reference`.
-void StencilShadows::take(std::size_t light, int reference, const View& view) const {
+/// What the stencil is where this light is seen, had it been 0.
+int StencilShadows::complete_count(const Prepared& prepared) const {
+  // It starts at 0, not at the count of the eye.
+  return method_ == VolumeMethod::kZFail ? 0 : -prepared.volumes.eye_count;
+}
+
+/// The light of this number is seen where the stencil is `reference`.
+void StencilShadows::take(std::size_t number, int reference, const View& view) const {
   Vec4 bit(0.0f);
-  bit[static_cast<int>(light / 8)] = static_cast<float>(1 << (light % 8)) / 255.0f;
-  apply({.stencil = StencilUse::kTake, .reference = reference, .add = true}, view);
+  bit[static_cast<int>(number / 8)] = static_cast<float>(1 << (number % 8)) / 255.0f;
+  apply({.stencil = StencilUse::kTake, .reference = reference & (kStencilValues - 1), .add = true},
+        view);
   take_.set("u_value", bit);
   gl::draw_full_screen(no_vertices_);
 }
 
-/// Counts a light's volumes in the stencil and takes its bit where it is seen.
-void StencilShadows::draw_light(const Prepared& prepared, std::size_t light,
-                                const View& view) const {
+/// Counts a light's volumes in the stencil.
+void StencilShadows::count(const Prepared& prepared, const View& view) const {
   volume_.set("u_light", prepared.light);
-  array_.bind();
-  if (method_ == VolumeMethod::kZFail) {
-    DrawState state = {
-        .depth = DepthUse::kTest, .stencil = StencilUse::kCountHidden, .colour = false};
-    apply(state, view);
-    draw_indices(prepared.quads);
-    draw_indices(prepared.outward_caps);
-    state.swap_sides = true;
-    apply(state, view);
-    draw_indices(prepared.inward_caps);
-    take(light, 0, view);
-    return;
-  }
-  apply({.depth = DepthUse::kTest,
-         .stencil = StencilUse::kCountPassing,
-         .colour = false,
-         .depth_clamp = method_ == VolumeMethod::kExact},
-        view);
+  DrawState state = {.depth = DepthUse::kTest,
+                     .stencil = StencilUse::kCountPassing,
+                     .colour = false,
+                     .depth_clamp = method_ == VolumeMethod::kExact};
+  if (method_ == VolumeMethod::kZFail) state.stencil = StencilUse::kCountHidden;
+  apply(state, view);
   draw_indices(prepared.quads);
-  // The count starts at 0, not at that of the eye: it is complete where it is the negative.
-  constexpr int kStencilValues = 256;
-  const int around_eye = prepared.volumes.eye_count % kStencilValues;
-  take(light, (kStencilValues - around_eye) % kStencilValues, view);
+  if (method_ != VolumeMethod::kZFail) return;
+  draw_indices(prepared.outward_caps);
+  state.swap_sides = true;
+  apply(state, view);
+  draw_indices(prepared.inward_caps);
 }
 
-void StencilShadows::draw(std::span<const LightsInView> views, const gl::Framebuffer& framebuffer,
-                          StageTimes& times) {
+std::vector<StencilShadows::Prepared> StencilShadows::prepare(std::span<const LightsInView> views) {
   std::vector<Prepared> prepared;
-  for (const LightsInView& of_view : views) {
-    assert(of_view.lights.size() <= kLightsInGroup);
-    for (const LightPoint& light : of_view.lights) prepared.emplace_back().light = light;
+  std::size_t most = 0;
+  for (const LightsInView& of_view : views) most = std::max(most, of_view.lights.size());
+  assert(most <= kLightsInGroup);
+  for (std::size_t number = 0; number < most; ++number) {
+    for (const LightsInView& of_view : views) {
+      if (number >= of_view.lights.size()) continue;
+      Prepared& p = prepared.emplace_back();
+      p.light = of_view.lights[number];
+      p.number = number;
+      p.view = &of_view.view;
+    }
   }
-  const Vec3 eye = views.front().view.eye;
-  choose_walls(eye);
-  parallel_for(prepared.size(), 1,
-               [&](std::size_t i) { prepared[i] = prepare(prepared[i].light, eye); });
+  parallel_for(prepared.size(), 1, [&](std::size_t i) { find_volumes(prepared[i]); });
+  return prepared;
+}
 
+/// The triangles to draw of each light: its volumes and so many that cover its view that where the
+/// light is seen the stencil becomes what it does for the first of the same number.
+void StencilShadows::write_indices(std::span<Prepared> prepared, const Bounds& box) {
   std::vector<std::uint32_t> indices;
   const auto range = [&](const auto& append) {
     const std::size_t first = indices.size();
     append();
     return IndexRange{first, indices.size() - first};
   };
-  const Bounds box = box_around(world_, eye);
+  int reference = 0;
   for (Prepared& p : prepared) {
+    if (&p == prepared.data() || p.number != (&p - 1)->number) reference = complete_count(p);
+    p.reference = reference;
     p.quads = range([&] {
+      if (p.volumes.dark) {
+        append_covers(whole_, reference + 1, indices);
+        return;
+      }
+      append_covers(whole_, reference - complete_count(p), indices);
       for (const VolumeEdge& edge : p.volumes.edges) {
         if (method_ != VolumeMethod::kExact) {
           append_quad(edge, Place::kHere, Place::kAtInfinity, indices);
@@ -221,27 +251,40 @@ void StencilShadows::draw(std::span<const LightsInView> views, const gl::Framebu
         append_quad_in_box(edge, side(edge.from) != side(edge.to), indices);
       }
     });
-    if (method_ != VolumeMethod::kZFail) continue;
+    if (method_ != VolumeMethod::kZFail || p.volumes.dark) continue;
     p.outward_caps = range([&] { append_caps(*p.list, p.light, true, indices); });
     p.inward_caps = range([&] { append_caps(*p.list, p.light, false, indices); });
   }
   indices_.write(std::span<const std::uint32_t>(indices));
+}
+
+void StencilShadows::draw(std::span<const LightsInView> views, const gl::Framebuffer& framebuffer,
+                          StageTimes& times) {
+  const View& any_view = views.front().view;
+  choose_walls(any_view.eye);
+  std::vector<Prepared> prepared = prepare(views);
+  const Bounds box = box_around(world_, any_view.eye);
+  write_indices(prepared, box);
 
   times.begin(Stage::kVolumes);
   framebuffer.bind();
   reset_draw_state();
   const float none[4] = {};
   glClearBufferfv(GL_COLOR, 0, none);
-  volume_.set("u_eye", eye);
+  volume_.set("u_eye", any_view.eye);
   volume_.set("u_low", box.low);
   volume_.set("u_high", box.high);
-  auto next = prepared.cbegin();
-  for (const LightsInView& of_view : views) {
-    set_viewport(of_view.view);
-    volume_.set("u_clip", of_view.view.clip);
-    for (std::size_t light = 0; light < of_view.lights.size(); ++light, ++next) {
-      if (!next->volumes.dark) draw_light(*next, light, of_view.view);
-    }
+  volume_.set("u_corners", static_cast<int>(kPlaces * whole_.vertices().size()));
+  volume_.set("u_cover", method_ == VolumeMethod::kZFail ? far_depth(any_view) : near_z(any_view));
+  for (const Prepared& p : prepared) {
+    const View& view = *p.view;
+    volume_.set("u_clip", view.clip);
+    array_.bind();
+    set_viewport(view);
+    count(p, view);
+    if (&p != &prepared.back() && (&p + 1)->number == p.number) continue;
+    framebuffer.bind();
+    take(p.number, p.reference, view);
   }
   reset_draw_state();
   times.end();
@@ -251,7 +294,8 @@ void StencilShadows::draw(std::span<const LightsInView> views, const gl::Framebu
 void StencilShadows::draw_sides(const LightPoint& light, const View& view,
                                 const gl::Framebuffer& framebuffer) {
   choose_walls(view.eye);
-  const Prepared prepared = prepare(light, view.eye);
+  const LightsInView only{view, std::span(&light, 1)};
+  const Prepared prepared = prepare(std::span(&only, 1)).front();
   std::vector<std::uint32_t> indices;
   for (const VolumeEdge& edge : prepared.volumes.edges) {
     append_quad(edge, Place::kHere, Place::kAtInfinity, indices);
@@ -266,6 +310,8 @@ void StencilShadows::draw_sides(const LightPoint& light, const View& view,
   sides_.set("u_eye", view.eye);
   sides_.set("u_low", Vec3(0.0f));
   sides_.set("u_high", Vec3(0.0f));
+  sides_.set("u_corners", std::numeric_limits<int>::max());
+  sides_.set("u_cover", 0.0f);
   sides_.set("u_clip", view.clip);
   sides_.set("u_light", prepared.light);
   array_.bind();

@@ -52,17 +52,25 @@ class StencilShadows {
   void draw_sides(const LightPoint& light, const View& view, const gl::Framebuffer& framebuffer);
 
  private:
+  /// A light, its number in its group, and what is drawn of it.
   struct Prepared {
     LightPoint light{0.0f};
+    std::size_t number = 0;
+    const View* view = nullptr;
     ShadowVolumes volumes;
     const EdgeList* list = nullptr;
+    int reference = 0;
     IndexRange quads, outward_caps, inward_caps;
   };
 
   void choose_walls(const Vec3& eye);
-  Prepared prepare(const LightPoint& light, const Vec3& eye) const;
-  void draw_light(const Prepared& prepared, std::size_t light, const View& view) const;
-  void take(std::size_t light, int reference, const View& view) const;
+  /// The first lights of all views, the second, ...
+  std::vector<Prepared> prepare(std::span<const LightsInView> views);
+  void find_volumes(Prepared& prepared) const;
+  int complete_count(const Prepared& prepared) const;
+  void write_indices(std::span<Prepared> prepared, const Bounds& box);
+  void count(const Prepared& prepared, const View& view) const;
+  void take(std::size_t number, int reference, const View& view) const;
 
   const World& world_;
   const World& casters_;
