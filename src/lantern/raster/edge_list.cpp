@@ -208,30 +208,41 @@ void EdgeList::sort_by_part() {
     parts_[p].radius = bounds[p].radius();
   }
 
+  std::vector<std::uint32_t> edge_order(edges_.size());
+  std::iota(edge_order.begin(), edge_order.end(), 0u);
+  const auto first_place = [&](std::uint32_t e) { return place[faces_[edges_[e].first] / 2]; };
+  std::vector<std::uint32_t> part_of_caster;
+  for (std::uint32_t p = 0; p < parts_.size(); ++p) {
+    part_of_caster.insert(part_of_caster.end(), parts_[p].casters, p);
+  }
+  const auto part_of_edge = [&](std::uint32_t e) { return part_of_caster[first_place(e)]; };
+  std::stable_sort(edge_order.begin(), edge_order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return part_of_edge(a) < part_of_edge(b);
+  });
   std::vector<Edge> edges;
   std::vector<std::uint32_t> faces;
-  for (const bool even : {false, true}) {
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
-      if (std::get<0>(part_of(faces_[edges_[e].first] / 2)) != even) continue;
-      edges.push_back({edges_[e].a, edges_[e].b, static_cast<std::uint32_t>(faces.size())});
-      for (std::uint32_t f = edges_[e].first; f < end_of(e); ++f) {
-        faces.push_back(2 * place[faces_[f] / 2] + faces_[f] % 2);
-      }
+  for (const std::uint32_t e : edge_order) {
+    Part& part = parts_[part_of_edge(e)];
+    if (part.edges++ == 0) part.first_edge = static_cast<std::uint32_t>(edges.size());
+    edges.push_back({edges_[e].a, edges_[e].b, static_cast<std::uint32_t>(faces.size())});
+    for (std::uint32_t f = edges_[e].first; f < end_of(e); ++f) {
+      faces.push_back(2 * place[faces_[f] / 2] + faces_[f] % 2);
     }
-    if (!even) odd_edges_ = edges.size();
   }
   edges_ = std::move(edges);
   faces_ = std::move(faces);
   casters_ = std::move(sorted);
 }
 
+std::int8_t EdgeList::facing(std::uint32_t caster, const LightPoint& light) const {
+  const Vec4& p = planes_[caster];
+  const float side = p.x * light.x + p.y * light.y + p.z * light.z + p.w * light.w;
+  return side >= 0.0f ? std::int8_t{1} : std::int8_t{-1};
+}
+
 std::vector<std::int8_t> EdgeList::facing(const LightPoint& light) const {
   std::vector<std::int8_t> signs(planes_.size());
-  for (std::size_t t = 0; t < planes_.size(); ++t) {
-    const Vec4& p = planes_[t];
-    const float side = p.x * light.x + p.y * light.y + p.z * light.z + p.w * light.w;
-    signs[t] = side >= 0.0f ? std::int8_t{1} : std::int8_t{-1};
-  }
+  for (std::uint32_t t = 0; t < planes_.size(); ++t) signs[t] = facing(t, light);
   return signs;
 }
 
@@ -257,10 +268,18 @@ int EdgeList::signed_crossing(std::uint32_t caster, const LightPoint& light,
   return side_of_edge(t.z, t.x, light, eye) == side ? side : 0;
 }
 
-ShadowVolumes EdgeList::volumes(const LightPoint& light, const Vec3& eye, VolumeCount count) const {
-  const std::vector<std::int8_t> light_side = facing(light);
-  ShadowVolumes result;
-  for (std::size_t e = 0; e < edges_.size(); ++e) {
+bool EdgeList::is_outside(const Part& part, const LightPoint& light, std::span<const Vec4> region) {
+  // The shadow widens on its way.
+  const Vec3 way = light.w * part.centre - Vec3(light);
+  return std::any_of(region.begin(), region.end(), [&](const Vec4& plane) {
+    return signed_distance(plane, part.centre) < -part.radius &&
+           glm::dot(Vec3(plane), way) <= -light.w * part.radius;
+  });
+}
+
+void EdgeList::append_edges(const Part& part, std::span<const std::int8_t> light_side, bool halved,
+                            std::vector<VolumeEdge>& edges) const {
+  for (std::size_t e = part.first_edge; e < part.first_edge + part.edges; ++e) {
     const std::uint32_t end =
         e + 1 < edges_.size() ? edges_[e + 1].first : static_cast<std::uint32_t>(faces_.size());
     int times = 0;
@@ -268,32 +287,48 @@ ShadowVolumes EdgeList::volumes(const LightPoint& light, const Vec3& eye, Volume
       const int side = light_side[faces_[f] / 2];
       times += faces_[f] % 2 == 0 ? side : -side;
     }
-    if (e >= odd_edges_ && count == VolumeCount::kHalved) times /= 2;
-    for (; times > 0; --times) result.edges.push_back({edges_[e].a, edges_[e].b});
-    for (; times < 0; ++times) result.edges.push_back({edges_[e].b, edges_[e].a});
+    if (halved) times /= 2;
+    for (; times > 0; --times) edges.push_back({edges_[e].a, edges_[e].b});
+    for (; times < 0; ++times) edges.push_back({edges_[e].b, edges_[e].a});
   }
+}
 
+/// Of the part's volumes around the eye.
+int EdgeList::count_at_eye(const Part& part, std::span<const std::int8_t> light_side,
+                           const LightPoint& light, const Vec3& eye) const {
   const Vec3 towards_light = Vec3(light) - light.w * eye;
-  const float length_squared = glm::dot(towards_light, towards_light);
+  const Vec3 off_line = glm::cross(part.centre - eye, towards_light);
+  constexpr float kSlack = 1.001f;  // rounding of this test, not of the next
+  const float reach = kSlack * part.radius * part.radius;
+  if (glm::dot(off_line, off_line) > reach * glm::dot(towards_light, towards_light)) return 0;
+  int count = 0;
+  for (std::uint32_t t = part.first_caster; t < part.first_caster + part.casters; ++t) {
+    const double eye_side =
+        glm::dot(dvec3(planes_[t]), dvec3(eye) - dvec3(vertices_[casters_[t].x]));
+    if ((eye_side >= 0.0) == (light_side[t] > 0)) continue;
+    count += light_side[t] * signed_crossing(t, light, eye);
+  }
+  return count;
+}
+
+ShadowVolumes EdgeList::volumes(const LightPoint& light, const Vec3& eye, VolumeCount count,
+                                std::span<const Vec4> region) const {
+  std::vector<std::int8_t> light_side(planes_.size());
+  ShadowVolumes result;
   for (const Part& part : parts_) {
-    const Vec3 off_line = glm::cross(part.centre - eye, towards_light);
-    constexpr float kSlack = 1.001f;  // rounding of this test, not of the next
-    if (glm::dot(off_line, off_line) > kSlack * part.radius * part.radius * length_squared) {
-      continue;
-    }
-    int part_count = 0;
+    if (is_outside(part, light, region)) continue;
     for (std::uint32_t t = part.first_caster; t < part.first_caster + part.casters; ++t) {
-      const Vec4& plane = planes_[t];
-      const double eye_side = glm::dot(dvec3(plane), dvec3(eye) - dvec3(vertices_[casters_[t].x]));
-      if ((eye_side >= 0.0) == (light_side[t] > 0)) continue;
-      part_count += light_side[t] * signed_crossing(t, light, eye);
+      light_side[t] = facing(t, light);
     }
-    if (part.even && count == VolumeCount::kHalved) {
+    const bool halved = part.even && count == VolumeCount::kHalved;
+    append_edges(part, light_side, halved, result.edges);
+    int of_eye = count_at_eye(part, light_side, light, eye);
+    if (halved) {
       // An odd count of triangles at the eye is an odd one, so never none, wherever it looks.
-      result.dark |= part_count % 2 != 0;
-      part_count /= 2;
+      result.dark |= of_eye % 2 != 0;
+      of_eye /= 2;
     }
-    result.eye_count += part_count;
+    result.eye_count += of_eye;
   }
   return result;
 }

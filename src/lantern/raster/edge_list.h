@@ -64,8 +64,11 @@ class EdgeList {
   /// have either; volumes are right with both.
   std::vector<std::int8_t> facing(const LightPoint& light) const;
 
+  /// Of points outside one of the planes, whose normals look inwards and have length 1, nothing is
+  /// asked: parts whose shadows lie wholly there are left out.
   ShadowVolumes volumes(const LightPoint& light, const Vec3& eye,
-                        VolumeCount count = VolumeCount::kHalved) const;
+                        VolumeCount count = VolumeCount::kHalved,
+                        std::span<const Vec4> region = {}) const;
 
  private:
   /// A part of the casters that shares no extruded edge with the rest.
@@ -74,6 +77,7 @@ class EdgeList {
     bool even;
     Vec3 centre;
     float radius;
+    std::uint32_t first_edge = 0, edges = 0;
   };
   struct Edge {
     std::uint32_t a, b;   // a < b
@@ -83,6 +87,13 @@ class EdgeList {
   void weld(const World& world);
   void find_edges(std::span<const std::uint32_t> wall_masks);
   void sort_by_part();
+  /// Whether all that the part can throw a shadow on is outside one of the planes.
+  static bool is_outside(const Part& part, const LightPoint& light, std::span<const Vec4> region);
+  std::int8_t facing(std::uint32_t caster, const LightPoint& light) const;
+  void append_edges(const Part& part, std::span<const std::int8_t> light_side, bool halved,
+                    std::vector<VolumeEdge>& edges) const;
+  int count_at_eye(const Part& part, std::span<const std::int8_t> light_side,
+                   const LightPoint& light, const Vec3& eye) const;
   int signed_crossing(std::uint32_t caster, const LightPoint& light, const Vec3& eye) const;
   int side_of_edge(std::uint32_t from, std::uint32_t to, const LightPoint& light,
                    const Vec3& eye) const;
@@ -91,8 +102,7 @@ class EdgeList {
   std::vector<uvec3> casters_;  // by part, odd parts first
   std::vector<Vec4> planes_;    // of the casters: area vector and offset
   std::vector<Part> parts_;
-  std::vector<Edge> edges_;           // by part too, with one more at the end
-  std::size_t odd_edges_ = 0;         // so many edges of odd parts come first
+  std::vector<Edge> edges_;           // by part too
   std::vector<std::uint32_t> faces_;  // 2 * caster + (1 if it runs from b to a)
 };
 

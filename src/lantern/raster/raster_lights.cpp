@@ -43,6 +43,8 @@ std::vector<LightGroup> group_lights(const VirtualLights& lights, std::span<cons
         add(LightFormula::kSurface,
             {Vec4(lifted, bound), Vec4(normal, 0.0f), Vec4(flux * kInvPi, 0.0f)},
             Vec4(lifted, 1.0f));
+        groups[open[static_cast<std::size_t>(LightFormula::kSurface)]].fronts.emplace_back(
+            normal, -glm::dot(normal, lifted));
         break;
       }
       case LightKind::kPoint:

@@ -28,6 +28,8 @@ struct LightGroup {
   LightFormula formula = LightFormula::kSurface;
   std::vector<LightRecord> records;
   std::vector<LightPoint> points;  // where shadow rays end
+  // Of lights that shine to one side the planes with all that they shine on before them, length 1.
+  std::vector<Vec4> fronts = {};
   // Where pixels have lights of their own: which pixel of a tile has these. Groups of one round
   // have one formula and are of different shares.
   std::size_t share = 0, round = 0;

@@ -155,13 +155,18 @@ void StencilShadows::find_volumes(Prepared& prepared) const {
   const float clear = 0x1p-20f * scale;
   const VolumeCount count =
       method_ == VolumeMethod::kZFail ? VolumeCount::kPlain : VolumeCount::kHalved;
+  std::vector<Vec4> region;
+  if (method_ == VolumeMethod::kExact) {
+    region = sides_of(*prepared.view);
+    if (prepared.front) region.push_back(*prepared.front);
+  }
   constexpr std::uint64_t kAttempts = 8;
   for (std::uint64_t attempt = 0; attempt < kAttempts; ++attempt) {
     if (attempt > 0) prepared.light = nudged(light, scale, attempt);
     // From behind one meets also what is outside the walls; the classics know no walls.
     const bool inside = method_ == VolumeMethod::kExact && is_inside(walls_, prepared.light);
     prepared.list = inside ? &*inside_ : &whole_;
-    prepared.volumes = prepared.list->volumes(prepared.light, eye, count);
+    prepared.volumes = prepared.list->volumes(prepared.light, eye, count, region);
     if (is_clear_of(*prepared.list, prepared.volumes, prepared.light, eye, clear)) break;
   }
   if (method_ == VolumeMethod::kZPass) {
@@ -213,6 +218,7 @@ std::vector<StencilShadows::Prepared> StencilShadows::prepare(std::span<const Li
       if (number >= of_view.lights.size()) continue;
       Prepared& p = prepared.emplace_back();
       p.light = of_view.lights[number];
+      if (!of_view.fronts.empty()) p.front = of_view.fronts[number];
       p.number = number;
       p.view = &of_view.view;
     }

@@ -21,6 +21,8 @@ namespace lantern {
 struct LightsInView {
   const View& view;
   std::span<const LightPoint> lights;
+  // For each the plane with all that it shines on before it, of length 1; none: it shines around.
+  std::span<const Vec4> fronts = {};
 };
 
 struct IndexRange {
@@ -55,6 +57,7 @@ class StencilShadows {
   /// A light, its number in its group, and what is drawn of it.
   struct Prepared {
     LightPoint light{0.0f};
+    std::optional<Vec4> front;
     std::size_t number = 0;
     const View* view = nullptr;
     ShadowVolumes volumes;

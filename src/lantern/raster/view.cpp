@@ -45,4 +45,16 @@ View make_view(const Camera& camera, const ViewOptions& options) {
                                           std::bit_cast<std::uint32_t>(options.offset.y)))};
 }
 
+std::vector<Vec4> sides_of(const View& view) {
+  const Mat4 rows = glm::transpose(view.clip);
+  std::vector<Vec4> planes;
+  for (const float sign : {-1.0f, 1.0f}) {
+    for (int axis = 0; axis < 2; ++axis) {
+      const Vec3 normal = glm::normalize(Vec3(rows[3] + sign * rows[axis]));
+      planes.emplace_back(normal, -glm::dot(normal, view.eye));
+    }
+  }
+  return planes;
+}
+
 }  // namespace lantern

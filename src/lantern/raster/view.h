@@ -7,6 +7,7 @@
 #include "lantern/scene/scene.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace lantern {
 
@@ -41,5 +42,8 @@ struct View {
 };
 
 View make_view(const Camera& camera, const ViewOptions& options);
+
+/// Planes through the eye with all that is seen before them, of length 1.
+std::vector<Vec4> sides_of(const View& view);
 
 }  // namespace lantern
