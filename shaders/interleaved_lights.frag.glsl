@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Irradiance where tiles are not smooth: each light gives what it gives to this very point, were
-// nothing between, as far as it is seen from its share's pixels around on the same surface.
+// nothing between, as far as it is seen from its share's pixels around on the same surface. With
+// AMID_PLANE these are all on it and face what the point does.
 #include "shaders/interleaved_quads.glsl"
 #include "shaders/interleaved_masks.glsl"
 #include "shaders/octahedral.glsl"
@@ -23,6 +24,23 @@ struct Pixels {
   Point p0, p1, p2, p3;
 };
 
+// Shadows have edges: what most say counts for more.
+vec4 sharpened(vec4 seen) { return clamp(2.0 * seen - 0.5, 0.0, 1.0); }
+
+#if AMID_PLANE
+/// What a pixel of a share knows of its lights.
+struct Witness {
+  uint seen;    // bits of lights
+  vec4 weight;  // for each of the pixels: 1 / distance²
+};
+
+Witness witness(ivec2 at, ivec2 first) {
+  vec4 dx = float(first.x - at.x) + vec4(0.0, 1.0, 2.0, 3.0);
+  float dy = float(first.y - at.y);
+  return Witness(mask_at(place_among_shares(at, textureSize(u_masks, 0))),
+                 1.0 / (dx * dx + dy * dy + 1e-6));
+}
+#else
 /// 0 for a point on the surface of p, else how little it is like one that is.
 float strangeness(Point p, Point other) {
   // Beyond 30 degrees it is another side of things.
@@ -40,8 +58,8 @@ float nearness_of(Point p, Point other) {
 
 /// What a pixel of a share knows of its lights.
 struct Witness {
-  Point point;  // without normals if there is none
-  uint seen;    // bits of lights
+  Point point;           // without normals if there is none
+  uint seen;             // bits of lights
   vec4 strange, weight;  // to each of the pixels
 };
 
@@ -69,6 +87,7 @@ vec4 heard(Witness w, vec4 least) { return w.weight * vec4(lessThanEqual(w.stran
 float faces(Witness w, Light light) {
   return dot(w.point.geometric, way_to(light, w.point)) > 0.0 ? 1.0 : 0.0;
 }
+#endif
 
 void main() {
   ivec2 at = first_pixel_of(ivec2(gl_FragCoord.xy));
@@ -83,24 +102,39 @@ void main() {
     x0 += (share % TILE - x0) & (TILE - 1);
     y1 -= (at.y - share / TILE) & (TILE - 1);
     int x1 = x0 + TILE, y0 = y1 - TILE;
+#if AMID_PLANE
+    Witness a = witness(ivec2(x0, y0), at), b = witness(ivec2(x1, y0), at);
+    Witness c = witness(ivec2(x0, y1), at), d = witness(ivec2(x1, y1), at);
+    vec4 all_of_them = a.weight + b.weight + c.weight + d.weight;
+    a.weight /= all_of_them;
+    b.weight /= all_of_them;
+    c.weight /= all_of_them;
+    d.weight /= all_of_them;
+#else
     Witness a = witness(ivec2(x0, y0), pixels), b = witness(ivec2(x1, y0), pixels);
     Witness c = witness(ivec2(x0, y1), pixels), d = witness(ivec2(x1, y1), pixels);
     vec4 least = min(min(a.strange, b.strange), min(c.strange, d.strange));
     vec4 hear_a = heard(a, least), hear_b = heard(b, least);
     vec4 hear_c = heard(c, least), hear_d = heard(d, least);
+#endif
     uvec4 seen_by = uvec4(a.seen, b.seen, c.seen, d.seen);
     for (int i = 0; i < count; ++i) {
       Light light = u_lights[first + i];
+#if AMID_PLANE
+      vec4 see = vec4(bit(seen_by, i));
+      vec4 seen =
+          sharpened(see.x * a.weight + see.y * b.weight + see.z * c.weight + see.w * d.weight);
+#else
       vec4 can = vec4(faces(a, light), faces(b, light), faces(c, light), faces(d, light));
       vec4 do_see = can * vec4(bit(seen_by, i));
       vec4 could = can.x * hear_a + can.y * hear_b + can.z * hear_c + can.w * hear_d;
       vec4 seen = do_see.x * hear_a + do_see.y * hear_b + do_see.z * hear_c + do_see.w * hear_d;
-      // Shadows have edges: what most say counts for more.
-      seen = clamp(2.0 * seen / max(could, 1e-30) - 0.5, 0.0, 1.0);
+      seen = sharpened(seen / max(could, 1e-30));
       // Of what these cannot tell the others may; what nobody could see is seen.
       bool any_sees = any(greaterThan(do_see, vec4(0.0)));
       bool none_can = all(equal(can, vec4(0.0)));
       seen = mix(vec4(any_sees || none_can), seen, vec4(greaterThan(could, vec4(0.0))));
+#endif
       sum0 += seen.x * irradiance_from(light, pixels.p0);
       sum1 += seen.y * irradiance_from(light, pixels.p1);
       sum2 += seen.z * irradiance_from(light, pixels.p2);

@@ -35,6 +35,13 @@ void main() {
   // More than this is an edge of a shadow or something near.
   const float kSmooth = 0.2;
   bool is_smooth = (before || after) && (above || below) && most <= kSmooth * here;
+  const uint kBothSides = kBefore | kAfter, kAll = kBothSides | kAbove | kBelow;
+  bool is_amid = joins == kAll;
+  if (is_amid) {
+    uint next = texelFetch(u_joins, tile - ivec2(0, 1), 0).r &
+                texelFetch(u_joins, tile + ivec2(0, 1), 0).r;
+    is_amid = (next & kBothSides) == kBothSides;
+  }
   bool is_sky = texelFetch(u_tiles, tile, 0) == uvec4(0u);
-  o_middle = uvec4(floatBitsToUint(irradiance), joins | (is_smooth || is_sky ? 0u : kRough));
+  o_middle = uvec4(floatBitsToUint(irradiance), joins | (is_smooth || is_sky ? 0u : kRough) | (is_amid ? kAmidPlane : 0u));
 }

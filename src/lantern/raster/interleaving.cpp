@@ -14,6 +14,8 @@ namespace {
 
 constexpr GLuint kLightsBinding = 0;
 constexpr int kTilesOfQuad = 4;
+/// What the stencil tells of quads of pixels.
+constexpr int kRoughQuads = 0, kRoughQuadsAmidPlane = 1, kSmoothQuads = 2;
 
 int round_up(int n, int step) { return (n + step - 1) / step * step; }
 
@@ -28,12 +30,13 @@ gl::Program program_of(const gl::ShaderFiles& files, const char* fragment, int t
 }
 
 std::vector<gl::Program> programs_of_lights(const gl::ShaderFiles& files, const char* fragment,
-                                            int tile) {
+                                            int tile, bool amid_plane = false) {
   std::vector<gl::Program> programs;
   for (int formula = 0; formula < kLightFormulas; ++formula) {
-    programs.push_back(program_of(
-        files, fragment, tile,
-        {{"KIND", std::to_string(formula)}, {"LIGHTS", std::to_string(kLightsInRound)}}));
+    programs.push_back(program_of(files, fragment, tile,
+                                  {{"KIND", std::to_string(formula)},
+                                   {"LIGHTS", std::to_string(kLightsInRound)},
+                                   {"AMID_PLANE", amid_plane ? "1" : "0"}}));
     programs.back().set_block("Lights", kLightsBinding);
   }
   return programs;
@@ -109,8 +112,11 @@ Interleaving::Interleaving(const Surfaces& surfaces, const Shadows& shadows, Sta
       join_tiles_(program_of(files, "shaders/interleaved_joins.frag.glsl", tile_)),
       find_middles_(program_of(files, "shaders/interleaved_middles.frag.glsl", tile_)),
       fill_smooth_(program_of(files, "shaders/interleaved_smooth.frag.glsl", tile_)),
+      cover_amid_(program_of(files, "shaders/interleaved_amid.frag.glsl", tile_)),
       add_shares_(programs_of_lights(files, "shaders/interleaved_shares.frag.glsl", tile_)),
       add_lights_(programs_of_lights(files, "shaders/interleaved_lights.frag.glsl", tile_)),
+      add_lights_amid_(
+          programs_of_lights(files, "shaders/interleaved_lights.frag.glsl", tile_, true)),
       planes_(gl::Format::kRgba32ui, tiles_.x, tiles_.y),
       joins_(gl::Format::kR32ui, tiles_.x, tiles_.y),
       middles_(gl::Format::kRgba32ui, tiles_.x, tiles_.y),
@@ -189,15 +195,19 @@ void Interleaving::add_to_tiles(const Round& round, bool first) {
   std::swap(tile_irradiance_[0], tile_irradiance_[1]);
 }
 
-void Interleaving::add_to_pixels(const Round& round, bool first) {
-  const gl::Program& program = add_lights_[static_cast<std::size_t>(round.formula)];
-  set_in(program, round, first);
-  program.set("u_plane_distance", plane_distance_);
-  program.set("u_points", 2, whole_.points);
-  program.set("u_reflectances", 3, whole_.reflectances);
-  irradiance_[0].set_in(program, 4);
+void Interleaving::add_to_pixels(const Round& round, bool first, const View& view) {
   irradiance_[1].framebuffer.bind();
-  gl::draw_full_screen(no_vertices_);
+  for (const int part : {kRoughQuads, kRoughQuadsAmidPlane}) {
+    const auto& programs = part == kRoughQuads ? add_lights_ : add_lights_amid_;
+    const gl::Program& program = programs[static_cast<std::size_t>(round.formula)];
+    set_in(program, round, first);
+    if (part == kRoughQuads) program.set("u_plane_distance", plane_distance_);
+    program.set("u_points", 2, whole_.points);
+    program.set("u_reflectances", 3, whole_.reflectances);
+    irradiance_[0].set_in(program, 4);
+    apply({.stencil = StencilUse::kMatch, .reference = part}, view);
+    gl::draw_full_screen(no_vertices_);
+  }
   std::swap(irradiance_[0], irradiance_[1]);
 }
 
@@ -217,13 +227,15 @@ void Interleaving::fill(const View& view, std::size_t rounds) {
 
   // Into what the last of the rounds will draw into.
   irradiance_[rounds % 2].framebuffer.bind();
-  apply({.stencil = StencilUse::kMark, .reference = 1}, view);
-  glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(view), 0);
+  glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(view), kRoughQuads);
+  apply({.stencil = StencilUse::kMark, .reference = kRoughQuadsAmidPlane, .colour = false}, view);
+  cover_amid_.set("u_middles", 0, middles_);
+  gl::draw_full_screen(no_vertices_);
+  apply({.stencil = StencilUse::kMark, .reference = kSmoothQuads}, view);
   fill_smooth_.set("u_middles", 0, middles_);
   gl::draw_full_screen(no_vertices_);
 
-  apply({.stencil = StencilUse::kMatch, .reference = 0}, view);
-  for (std::size_t i = 0; i < rounds; ++i) add_to_pixels(rounds_[i], i == 0);
+  for (std::size_t i = 0; i < rounds; ++i) add_to_pixels(rounds_[i], i == 0, view);
   reset_draw_state();
   gl::check("filling pixels");
 }

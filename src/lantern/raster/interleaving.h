@@ -82,7 +82,7 @@ class Interleaving {
   /// What a program of a round reads.
   void set_in(const gl::Program& program, const Round& round, bool first) const;
   void add_to_tiles(const Round& round, bool first);
-  void add_to_pixels(const Round& round, bool first);
+  void add_to_pixels(const Round& round, bool first, const View& view);
   void fill(const View& view, std::size_t rounds);
 
   const Surfaces& surfaces_;
@@ -94,8 +94,8 @@ class Interleaving {
   GBuffer whole_;
   SharePictures shares_;
   LightMasks masks_;
-  gl::Program split_, find_tiles_, join_tiles_, find_middles_, fill_smooth_;
-  std::vector<gl::Program> add_shares_, add_lights_;  // by formula
+  gl::Program split_, find_tiles_, join_tiles_, find_middles_, fill_smooth_, cover_amid_;
+  std::vector<gl::Program> add_shares_, add_lights_, add_lights_amid_;  // by formula
   gl::Texture planes_, joins_, middles_, stencil_;
   gl::Framebuffer planes_framebuffer_, joins_framebuffer_, middles_framebuffer_;
   std::vector<Round> rounds_;

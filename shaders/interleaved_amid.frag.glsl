@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+// Covers the pixels of tiles amid their planes.
+#include "shaders/interleaved.glsl"
+
+uniform highp usampler2D u_middles;  // see shaders/interleaved_middles.frag.glsl
+
+void main() {
+  ivec2 tile = first_pixel_of(ivec2(gl_FragCoord.xy)) / TILE;
+  if ((texelFetch(u_middles, tile, 0).a & kAmidPlane) == 0u) discard;
+}
