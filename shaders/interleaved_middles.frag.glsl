@@ -33,7 +33,7 @@ void main() {
                        step_to(tile + ivec2(0, 1), below, here)));
   most = max(most, texelFetch(u_changes, ivec2(tile.x / 4, tile.y), 0)[tile.x % 4]);
   // More than this is an edge of a shadow or something near.
-  const float kSmooth = 0.2;
+  const float kSmooth = 0.15;
   bool is_smooth = (before || after) && (above || below) && most <= kSmooth * here;
   const uint kBothSides = kBefore | kAfter, kAll = kBothSides | kAbove | kBelow;
   bool is_amid = joins == kAll;
