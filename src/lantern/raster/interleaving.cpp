@@ -173,7 +173,13 @@ void Interleaving::look(Round& round, std::span<const View> of_shares,
   round.formula = groups.front().formula;
   round.lights.write(std::span<const LightRecord>(lights));
   round.lights_of.write(std::span<const std::uint32_t>(lights_of));
-  masks_.draw(in_view, round.masks);
+  const gl::Texture& seen = masks_.draw(in_view, round.masks);
+  if (&seen == &round.masks.mask) return;
+  const gl::Framebuffer masks({&seen});
+  masks.bind();
+  round.masks.mask.bind(0);
+  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, seen.width(), seen.height());
+  gl::check("keeping masks");
 }
 
 void Interleaving::set_in(const gl::Program& program, const Round& round, bool first) const {

@@ -55,8 +55,9 @@ class LightMasks {
   /// Keeps a reference until the next.
   void look_at(const GBuffer& picture);
 
-  /// Each view has its own part of the picture, in which it is asked for one group.
-  void draw(std::span<const GroupInView> views, const MaskPicture& to);
+  /// Each view has its own part of the picture, in which it is asked for one group. The result is
+  /// drawn into `to` or, where maps have the last word, is theirs until the next.
+  const gl::Texture& draw(std::span<const GroupInView> views, const MaskPicture& to);
 
  private:
   Shadows shadows_;

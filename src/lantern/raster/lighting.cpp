@@ -30,20 +30,19 @@ void Lighting::draw(const View& view, std::span<const LightGroup> groups,
   shading_.clear();
   for (const LightGroup& group : groups) {
     const GroupInView in_view{view, group};
-    masks_.draw(std::span(&in_view, 1), mask_);
-    add(group);
+    add(group, masks_.draw(std::span(&in_view, 1), mask_));
     if (!group_done()) break;
   }
 }
 
 /// What the lights of the mask's bits give.
-void Lighting::add(const LightGroup& group) {
+void Lighting::add(const LightGroup& group, const gl::Texture& mask) {
   std::array<LightRecord, kLightsInGroup> records;
   std::copy(group.records.begin(), group.records.end(), records.begin());
   light_block_.write(std::span<const LightRecord>(records));
   light_block_.bind_as_uniforms(kLightsBinding);
   times_.begin(Stage::kShading);
-  shading_.add(group, g_buffer_, mask_.mask);
+  shading_.add(group, g_buffer_, mask);
   times_.end();
 }
 

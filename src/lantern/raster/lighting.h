@@ -32,7 +32,7 @@ class Lighting {
   const MaskedShading& shading() const { return shading_; }
 
  private:
-  void add(const LightGroup& group);
+  void add(const LightGroup& group, const gl::Texture& mask);
 
   const Surfaces& surfaces_;
   StageTimes& times_;
