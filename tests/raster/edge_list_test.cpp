@@ -266,6 +266,54 @@ TEST_P(Volumes, HalvedAndInsideWallsStillTellLightFromShadowWhereverOneSees) {
   EXPECT_GT(shadowed, 20);
 }
 
+TEST(EdgeList, LeavesOutPartsThatThrowNoShadowOnWhatIsAskedFor) {
+  Numbers numbers(11);
+  Scene scene;
+  for (int i = 0; i < 40; ++i) {
+    const Mat4 place = glm::translate(Mat4(1.0f), numbers.in_box(4.0f));
+    add(scene, kTetrahedron, kTetrahedronFaces, glm::scale(place, Vec3(0.6f)));
+  }
+  const World world = make_world(scene);
+  const EdgeList list(world);
+  std::size_t all_edges = 0, edges = 0;
+  int compared = 0, shadowed = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 place = numbers.in_box(5.0f), eye = numbers.in_box(5.0f);
+    const LightPoint light(i % 4 == 3 ? glm::normalize(place) : place, i % 4 == 3 ? 0.0f : 1.0f);
+    // Two sides of a view, and one that the light shines to.
+    std::vector<Vec4> region;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 normal = glm::normalize(numbers.in_box(1.0f));
+      region.emplace_back(normal, -glm::dot(normal, k < 2 ? eye : place));
+    }
+    const ShadowVolumes all = list.volumes(light, eye, VolumeCount::kPlain);
+    const ShadowVolumes few = list.volumes(light, eye, VolumeCount::kPlain, region);
+    all_edges += all.edges.size();
+    edges += few.edges.size();
+    for (int k = 0; k < 40; ++k) {
+      const Vec3 point = numbers.in_box(5.0f);
+      bool is_seen = is_inside(region, LightPoint(point, 1.0f));
+      for (std::uint32_t t = 0; t < world.size() && is_seen; ++t) {
+        is_seen = crossing(world, t, dvec3(eye), dvec3(point)) == 0;
+      }
+      if (!is_seen) continue;
+      const auto count = [&](const ShadowVolumes& volumes) {
+        int sum = volumes.eye_count;
+        for (const VolumeEdge& edge : volumes.edges) {
+          sum += quad_crossing(list, edge, light, dvec3(eye), dvec3(point));
+        }
+        return sum;
+      };
+      ASSERT_EQ(count(few), count(all)) << "light " << i << " point " << k;
+      ++compared;
+      shadowed += count(all) != 0 ? 1 : 0;
+    }
+  }
+  EXPECT_LT(edges, all_edges * 3 / 4);
+  EXPECT_GT(shadowed, compared / 20);
+  EXPECT_GT(compared, 100);
+}
+
 TEST(EdgeList, ExtrudesAClosedMeshAlongItsSilhouetteOnce) {
   const World world = make_world(tetrahedron());
   const EdgeList list(world);

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -280,6 +281,63 @@ TEST_P(ShadowsTest, ZFailIsTheSameEverywhere) {
     for (std::size_t light = 0; light < group.points.size(); ++light) {
       EXPECT_LE(masks_of(right, behind, light).differ, kOneView * kWidth * kHeight) << light;
     }
+  }
+}
+
+/// Every second column and row, each of the four with lights of its own, from eyes that different
+/// numbers of their volumes are around.
+TEST_P(ShadowsTest, ViewsSideBySideSeeWhatEachSeesByItself) {
+  constexpr int kStep = 2, kPart = kWidth / kStep;
+  const test::RasterStage stage(test::own_scene("cornell_box.scene"));
+  const LightGroup group =
+      group_lights(stage.lights(16), {}, stage.world.coordinate_scale()).front();
+  const std::array<std::size_t, 4> counts = {3, 7, 5, 6};
+  ASSERT_GE(group.points.size(), 21u);
+  for (const VolumeMethod method : {VolumeMethod::kExact, VolumeMethod::kZFail}) {
+    Both together(stage, method, ClipRange::kFarIs0);
+    Both alone(stage, method, ClipRange::kFarIs0, kPart, kPart);
+    std::size_t wrong = 0, lit = 0, compared = 0;
+    for (const Camera& camera : test::random_cameras(stage.world.bounds, 8)) {
+      std::vector<View> views;
+      std::vector<LightsInView> lights;
+      views.reserve(counts.size());
+      std::size_t first_light = 0;
+      for (int share = 0; share < 4; ++share) {
+        const glm::ivec2 first(share % kStep, share / kStep);
+        views.push_back(make_view(camera, {.width = kWidth,
+                                           .height = kHeight,
+                                           .step = kStep,
+                                           .first = first,
+                                           .origin = first * kPart,
+                                           .radius = stage.world.bounds.radius()}));
+        const std::size_t count = counts[static_cast<std::size_t>(share)];
+        lights.push_back({views.back(), std::span(group.points).subspan(first_light, count)});
+        first_light += count;
+        together.surfaces.draw(views.back(), together.g_buffer);
+      }
+      together.shadows.draw(lights, together.framebuffer, together.times);
+      const auto masks = together.framebuffer.read<std::uint8_t>();
+      for (std::size_t share = 0; share < 4; ++share) {
+        View view = views[share];
+        view.origin = glm::ivec2(0);
+        alone.surfaces.draw(view, alone.g_buffer);
+        alone.shadows.draw(lights[share].lights, view, alone.framebuffer, alone.times);
+        const auto own = alone.framebuffer.read<std::uint8_t>();
+        const glm::ivec2 origin = views[share].origin;
+        for (int y = 0; y < kPart; ++y) {
+          for (int x = 0; x < kPart; ++x) {
+            const auto at = static_cast<std::size_t>((origin.y + y) * kWidth + origin.x + x);
+            const unsigned asked = (1u << counts[share]) - 1u;
+            const unsigned there = own[4 * static_cast<std::size_t>(y * kPart + x)] & asked;
+            wrong += static_cast<std::size_t>(std::popcount((masks[4 * at] & asked) ^ there));
+            lit += static_cast<std::size_t>(std::popcount(there));
+            compared += counts[share];
+          }
+        }
+      }
+    }
+    EXPECT_LT(static_cast<double>(wrong), kEdges * static_cast<double>(compared));
+    EXPECT_GT(lit, compared / 20);
   }
 }
 

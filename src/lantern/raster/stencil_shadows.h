@@ -35,9 +35,10 @@ class StencilShadows {
   StencilShadows(const World& world, const gl::ShaderFiles& files, VolumeMethod method,
                  const World* casters = nullptr);
 
-  /// Bit i of a mask (RGBA8, the lowest byte in red): whether light i is seen; each view has its
-  /// part of it. `framebuffer` draws into it with the depth and stencil of a G-buffer that was
-  /// drawn with the same views; the stencil must be 0, and is left so. Drawing alone is timed.
+  /// Bit i of a mask (RGBA8, the lowest byte in red): whether light i is seen. Each view has its
+  /// part of the mask; bits of lights that it has not may be anything. `framebuffer` draws into the
+  /// mask with the depth and stencil of a G-buffer that was drawn with the same views; the stencil
+  /// must be 0, and is left so. Drawing alone is timed.
   void draw(std::span<const LightsInView> views, const gl::Framebuffer& framebuffer,
             StageTimes& times);
   void draw(std::span<const LightPoint> lights, const View& view,
