@@ -7,7 +7,7 @@
 namespace lantern {
 namespace {
 
-constexpr std::uint32_t kTriangles = 32;  // of a cluster, at most
+constexpr std::uint32_t kTriangles = 16;  // of a cluster, at most
 
 /// The lowest ten bits, two zeros between each and the next.
 std::uint32_t spread(std::uint32_t x) {
