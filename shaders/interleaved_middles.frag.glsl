@@ -31,10 +31,11 @@ void main() {
                        step_to(tile + ivec2(1, 0), after, here)),
                    max(step_to(tile - ivec2(0, 1), above, here),
                        step_to(tile + ivec2(0, 1), below, here)));
-  most = max(most, texelFetch(u_changes, ivec2(tile.x / 4, tile.y), 0)[tile.x % 4]);
-  // More than this is an edge of a shadow or something near.
-  const float kSmooth = 0.15;
-  bool is_smooth = (before || after) && (above || below) && most <= kSmooth * here;
+  float change = texelFetch(u_changes, ivec2(tile.x / 4, tile.y), 0)[tile.x % 4];
+  // More than these is something near, or an edge of a shadow.
+  const float kMostStep = 0.3, kMostChange = 0.11;
+  bool is_smooth = (before || after) && (above || below) && most <= kMostStep * here &&
+                   change <= kMostChange * here;
   const uint kBothSides = kBefore | kAfter, kAll = kBothSides | kAbove | kBelow;
   bool is_amid = joins == kAll;
   if (is_amid) {
@@ -43,5 +44,6 @@ void main() {
     is_amid = (next & kBothSides) == kBothSides;
   }
   bool is_sky = texelFetch(u_tiles, tile, 0) == uvec4(0u);
-  o_middle = uvec4(floatBitsToUint(irradiance), joins | (is_smooth || is_sky ? 0u : kRough) | (is_amid ? kAmidPlane : 0u));
+  o_middle = uvec4(floatBitsToUint(irradiance), joins | (is_smooth || is_sky ? 0u : kRough) |
+                                                    (is_amid ? kAmidPlane : 0u));
 }
