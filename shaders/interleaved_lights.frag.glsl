@@ -94,6 +94,9 @@ void main() {
   Pixels pixels = Pixels(point_at(at), point_at(at + ivec2(1, 0)), point_at(at + ivec2(2, 0)),
                          point_at(at + ivec2(3, 0)));
   vec3 sum0 = vec3(0.0), sum1 = vec3(0.0), sum2 = vec3(0.0), sum3 = vec3(0.0);
+#if !AMID_PLANE
+  vec4 told = vec4(0.0), untold = vec4(0.0);  // of what lights give, were nothing between
+#endif
   for (int share = 0; share < TILE * TILE; ++share) {
     uvec2 lights = texelFetch(u_lights_of, ivec2(share, 0), 0).rg;
     int first = int(lights.x), count = int(lights.y);
@@ -130,17 +133,32 @@ void main() {
       vec4 could = can.x * hear_a + can.y * hear_b + can.z * hear_c + can.w * hear_d;
       vec4 seen = do_see.x * hear_a + do_see.y * hear_b + do_see.z * hear_c + do_see.w * hear_d;
       seen = sharpened(seen / max(could, 1e-30));
-      // Of what these cannot tell the others may; what nobody could see is seen.
+      // Of what these cannot tell the others may.
       bool any_sees = any(greaterThan(do_see, vec4(0.0)));
-      bool none_can = all(equal(can, vec4(0.0)));
-      seen = mix(vec4(any_sees || none_can), seen, vec4(greaterThan(could, vec4(0.0))));
+      seen = mix(vec4(any_sees), seen, vec4(greaterThan(could, vec4(0.0))));
 #endif
-      sum0 += seen.x * irradiance_from(light, pixels.p0);
-      sum1 += seen.y * irradiance_from(light, pixels.p1);
-      sum2 += seen.z * irradiance_from(light, pixels.p2);
-      sum3 += seen.w * irradiance_from(light, pixels.p3);
+      vec3 e0 = irradiance_from(light, pixels.p0), e1 = irradiance_from(light, pixels.p1);
+      vec3 e2 = irradiance_from(light, pixels.p2), e3 = irradiance_from(light, pixels.p3);
+      sum0 += seen.x * e0;
+      sum1 += seen.y * e1;
+      sum2 += seen.z * e2;
+      sum3 += seen.w * e3;
+#if !AMID_PLANE
+      bool none_can = all(equal(can, vec4(0.0)));
+      vec4 all_of_it = vec4(brightness(e0), brightness(e1), brightness(e2), brightness(e3));
+      told += none_can ? vec4(0.0) : all_of_it;
+      untold += none_can ? all_of_it : vec4(0.0);
+#endif
     }
   }
+#if !AMID_PLANE
+  // Of lights that nobody could see as much is seen as of the others.
+  vec4 more = 1.0 + untold / max(told, 1e-30);
+  sum0 *= more.x;
+  sum1 *= more.y;
+  sum2 *= more.z;
+  sum3 *= more.w;
+#endif
   o_red = vec4(sum0.r, sum1.r, sum2.r, sum3.r);
   o_green = vec4(sum0.g, sum1.g, sum2.g, sum3.g);
   o_blue = vec4(sum0.b, sum1.b, sum2.b, sum3.b);

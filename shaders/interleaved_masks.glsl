@@ -12,3 +12,5 @@ uint mask_at(ivec2 place) {
 }
 
 uvec4 bit(uvec4 bits, int i) { return (bits >> uint(i)) & 1u; }
+
+float brightness(vec3 irradiance) { return irradiance.r + irradiance.g + irradiance.b; }

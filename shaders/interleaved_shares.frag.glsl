@@ -30,8 +30,6 @@ uvec4 where_joined(uvec4 joins, uint side) {
   return uvec4(notEqual(joins & side, uvec4(0u))) * 0xffffffffu;
 }
 
-float brightness(vec3 irradiance) { return irradiance.r + irradiance.g + irradiance.b; }
-
 void main() {
   ivec2 quad = ivec2(gl_FragCoord.xy), first = ivec2(4 * quad.x, quad.y);
   Point p0 = middle_of(first), p1 = middle_of(first + ivec2(1, 0));
