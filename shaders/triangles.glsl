@@ -6,8 +6,8 @@
 int exponent_of(float number) { return int(floatBitsToUint(number) >> 23) - 127; }
 
 uint lowest(uint bits) { return bits & (~bits + 1u); }
-/// The number of a bit.
-int number_of(uint bit) { return exponent_of(float(bit)); }
+/// The number of a bit; 0 of none.
+int number_of(uint bit) { return max(exponent_of(float(bit)), 0); }
 
 ivec2 texel_number(int i, int width) { return ivec2(i & (width - 1), i >> number_of(uint(width))); }
 

@@ -169,7 +169,10 @@ Framebuffer::Framebuffer(std::initializer_list<const Texture*> colours, const Te
                                                         : GL_DEPTH_ATTACHMENT,
            *depth);
   }
-  if (targets.empty()) targets.push_back(GL_NONE);
+  if (targets.empty()) {
+    targets.push_back(GL_NONE);
+    glReadBuffer(GL_NONE);
+  }
   glDrawBuffers(static_cast<GLsizei>(targets.size()), targets.data());
   const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
   if (status != GL_FRAMEBUFFER_COMPLETE) {

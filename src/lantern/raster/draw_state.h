@@ -41,7 +41,7 @@ void set_viewport(const View& view);
 /// GL as it starts, and as others expect it.
 void reset_draw_state();
 
-/// Depth of what is infinitely far; its z, w being 1, is the same.
+/// Depth of what is infinitely far.
 float far_depth(const View& view);
 /// The z of what is as near as can be drawn, w being 1.
 float near_z(const View& view);

@@ -182,10 +182,7 @@ void EdgeList::sort_by_part() {
     if ((end_of(e) - edges_[e].first) % 2 != 0) odd[sets.find(faces_[edges_[e].first] / 2)] = 1;
   }
 
-  const auto part_of = [&](std::uint32_t caster) {
-    const std::uint32_t root = sets.find(caster);
-    return std::tuple(odd[root] == 0, root);
-  };
+  const auto part_of = [&](std::uint32_t caster) { return sets.find(caster); };
   std::vector<std::uint32_t> order(casters_.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
@@ -197,7 +194,7 @@ void EdgeList::sort_by_part() {
     place[order[i]] = i;
     sorted.push_back(casters_[order[i]]);
     if (i == 0 || part_of(order[i]) != part_of(order[i - 1])) {
-      parts_.push_back({i, 0, std::get<0>(part_of(order[i])), Vec3(0.0f), 0.0f});
+      parts_.push_back({i, 0, odd[part_of(order[i])] == 0, Vec3(0.0f), 0.0f});
       bounds.emplace_back();
     }
     ++parts_.back().casters;

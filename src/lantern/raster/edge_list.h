@@ -99,7 +99,7 @@ class EdgeList {
                    const Vec3& eye) const;
 
   std::vector<Vec3> vertices_;
-  std::vector<uvec3> casters_;  // by part, odd parts first
+  std::vector<uvec3> casters_;  // by part
   std::vector<Vec4> planes_;    // of the casters: area vector and offset
   std::vector<Part> parts_;
   std::vector<Edge> edges_;           // by part too

@@ -55,6 +55,12 @@ std::vector<gl::Definition> Interleaving::definitions(int tile) {
 Interleaving::SharePictures::SharePictures(const glm::ivec2& size, bool asks_all) {
   if (asks_all) {
     all.emplace(size.x, size.y);
+    // No surfaces between the pictures.
+    all->framebuffer.bind();
+    const GLuint nothing[4] = {};
+    const float black[4] = {};
+    for (int i = 0; i < 2; ++i) glClearBufferuiv(GL_COLOR, i, nothing);
+    glClearBufferfv(GL_COLOR, 2, black);
     return;
   }
   depth_alone.emplace(gl::Format::kDepth32fStencil8, size.x, size.y);
@@ -291,6 +297,7 @@ void Interleaving::draw(const Camera& camera, const Vec2& offset,
     for (std::size_t i = 0; i < of_round.size(); ++i) go_on = group_done() && go_on;
     groups = groups.subspan(of_round.size());
   }
+  while (rounds_.size() > std::max<std::size_t>(rounds, 1)) rounds_.pop_back();
   times_.begin(Stage::kFilter);
   fill(view, rounds);
   times_.end();

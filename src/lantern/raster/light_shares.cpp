@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <utility>
 
 namespace lantern {
@@ -53,6 +54,7 @@ BoundedLights deal(const VirtualLights& lights, std::span<const float> bounds, s
 std::vector<LightGroup> group_shares(const VirtualLights& lights, std::span<const float> bounds,
                                      float coordinate_scale, std::size_t shares, std::size_t turn) {
   const std::size_t most = std::min(kLightsInGroup, kLightsInRound / shares);
+  assert(most > 0);
   std::array<std::vector<std::vector<LightGroup>>, kLightFormulas> rounds;
   const auto sets = share_out(lights, shares, turn);
   for (std::size_t share = 0; share < shares; ++share) {

@@ -15,7 +15,6 @@
 #include "lantern/sampling/kronecker.h"
 #include "lantern/scene/surface.h"
 
-#include <algorithm>
 #include <array>
 #include <list>
 #include <optional>

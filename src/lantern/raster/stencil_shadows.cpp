@@ -8,7 +8,6 @@
 #include "lantern/raster/raster_lights.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -227,6 +226,13 @@ std::vector<StencilShadows::Prepared> StencilShadows::prepare(std::span<const Li
   return prepared;
 }
 
+/// Lights whose indices are in memory at once: a group's, but all of one number.
+std::size_t StencilShadows::size_of_batch(std::span<const Prepared> prepared) {
+  std::size_t end = std::min(prepared.size(), kLightsInGroup);
+  while (end < prepared.size() && prepared[end].number == prepared[end - 1].number) ++end;
+  return end;
+}
+
 /// The triangles to draw of each light: its volumes and so many that cover its view that where the
 /// light is seen the stencil becomes what it does for the first of the same number.
 void StencilShadows::write_indices(std::span<Prepared> prepared, const Bounds& box) {
@@ -257,7 +263,9 @@ void StencilShadows::write_indices(std::span<Prepared> prepared, const Bounds& b
         append_quad_in_box(edge, side(edge.from) != side(edge.to), indices);
       }
     });
-    if (method_ != VolumeMethod::kZFail || p.volumes.dark) continue;
+    if (method_ != VolumeMethod::kZFail) continue;
+    assert(!p.volumes.dark &&
+           complete_count(p) == 0);  // nothing covers what is counted from behind
     p.outward_caps = range([&] { append_caps(*p.list, p.light, true, indices); });
     p.inward_caps = range([&] { append_caps(*p.list, p.light, false, indices); });
   }
@@ -270,7 +278,6 @@ void StencilShadows::draw(std::span<const LightsInView> views, const gl::Framebu
   choose_walls(any_view.eye);
   std::vector<Prepared> prepared = prepare(views);
   const Bounds box = box_around(world_, any_view.eye);
-  write_indices(prepared, box);
 
   times.begin(Stage::kVolumes);
   framebuffer.bind();
@@ -281,16 +288,20 @@ void StencilShadows::draw(std::span<const LightsInView> views, const gl::Framebu
   volume_.set("u_low", box.low);
   volume_.set("u_high", box.high);
   volume_.set("u_corners", static_cast<int>(kPlaces * whole_.vertices().size()));
-  volume_.set("u_cover", method_ == VolumeMethod::kZFail ? far_depth(any_view) : near_z(any_view));
-  for (const Prepared& p : prepared) {
-    const View& view = *p.view;
-    volume_.set("u_clip", view.clip);
-    array_.bind();
-    set_viewport(view);
-    count(p, view);
-    if (&p != &prepared.back() && (&p + 1)->number == p.number) continue;
-    framebuffer.bind();
-    take(p.number, p.reference, view);
+  volume_.set("u_cover", near_z(any_view));
+  for (std::span<Prepared> left = prepared; !left.empty();) {
+    const std::span<Prepared> batch = left.first(size_of_batch(left));
+    left = left.subspan(batch.size());
+    write_indices(batch, box);
+    for (const Prepared& p : batch) {
+      volume_.set("u_clip", p.view->clip);
+      array_.bind();
+      set_viewport(*p.view);
+      count(p, *p.view);
+      if (&p != &batch.back() && (&p + 1)->number == p.number) continue;
+      framebuffer.bind();
+      take(p.number, p.reference, *p.view);
+    }
   }
   reset_draw_state();
   times.end();

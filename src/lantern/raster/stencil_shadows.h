@@ -37,8 +37,8 @@ class StencilShadows {
 
   /// Bit i of a mask (RGBA8, the lowest byte in red): whether light i is seen. Each view has its
   /// part of the mask; bits of lights that it has not may be anything. `framebuffer` draws into the
-  /// mask with the depth and stencil of a G-buffer that was drawn with the same views; the stencil
-  /// must be 0, and is left so. Drawing alone is timed.
+  /// mask with a stencil, which must be 0 and is left so, and the depth that the views see; see
+  /// needs_depth_of_view(). Drawing is timed.
   void draw(std::span<const LightsInView> views, const gl::Framebuffer& framebuffer,
             StageTimes& times);
   void draw(std::span<const LightPoint> lights, const View& view,
@@ -72,6 +72,7 @@ class StencilShadows {
   std::vector<Prepared> prepare(std::span<const LightsInView> views);
   void find_volumes(Prepared& prepared) const;
   int complete_count(const Prepared& prepared) const;
+  static std::size_t size_of_batch(std::span<const Prepared> prepared);
   void write_indices(std::span<Prepared> prepared, const Bounds& box);
   void count(const Prepared& prepared, const View& view) const;
   void take(std::size_t number, int reference, const View& view) const;
