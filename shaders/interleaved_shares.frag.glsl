@@ -3,7 +3,7 @@
 // Each light is seen as its share's pixels around say, those of the tile and of its neighbours.
 #include "shaders/interleaved.glsl"
 #include "shaders/interleaved_masks.glsl"
-#include "shaders/interleaved_planes.glsl"
+#include "shaders/octahedral.glsl"
 
 uniform highp usampler2D u_tiles;  // see shaders/interleaved_tiles.frag.glsl
 uniform highp usampler2D u_joins;  // see shaders/interleaved_joins.frag.glsl

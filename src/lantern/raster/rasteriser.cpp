@@ -5,6 +5,7 @@
 #include "lantern/gl/check.h"
 #include "lantern/gl/program.h"
 #include "lantern/raster/interleaving.h"
+#include "lantern/raster/light_round.h"
 #include "lantern/raster/light_shares.h"
 #include "lantern/raster/lighting.h"
 #include "lantern/raster/raster_lights.h"
@@ -66,7 +67,7 @@ struct Target {
 
 gl::Program resolve_program(const gl::ShaderFiles& files, int tile) {
   return gl::Program(files, "shaders/full_screen.vert.glsl", "shaders/resolve.frag.glsl",
-                     tile > 1 ? Interleaving::definitions(tile) : std::vector<gl::Definition>());
+                     tile > 1 ? tile_definitions(tile) : std::vector<gl::Definition>());
 }
 
 }  // namespace

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "lantern/raster/pixel_irradiance.h"
+
+#include "lantern/gl/check.h"
+#include "lantern/raster/draw_state.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lantern {
+namespace {
+
+/// What the stencil tells of quads of pixels.
+constexpr int kRough = 0, kRoughAmidPlane = 1, kSmooth = 2;
+
+constexpr const char* kLights = "shaders/interleaved_lights.frag.glsl";
+
+/// How many there are; see shaders/interleaved.glsl.
+glm::ivec2 quads_of(int tile, int width, int height) {
+  const int columns = std::min(tile, 4);
+  return {(width + columns - 1) / columns * tile, (height + tile - 1) / tile};
+}
+
+}  // namespace
+
+PixelIrradiance::Quads::Quads(const gl::Texture& stencil)
+    : red(gl::Format::kRgba32f, stencil.width(), stencil.height()),
+      green(gl::Format::kRgba32f, stencil.width(), stencil.height()),
+      blue(gl::Format::kRgba32f, stencil.width(), stencil.height()),
+      framebuffer({&red, &green, &blue}, &stencil) {}
+
+void PixelIrradiance::Quads::set_in(const gl::Program& program, int unit) const {
+  program.set("u_red", unit, red);
+  program.set("u_green", unit + 1, green);
+  program.set("u_blue", unit + 2, blue);
+}
+
+PixelIrradiance::PixelIrradiance(const gl::ShaderFiles& files, int tile, int width, int height,
+                                 float plane_distance)
+    : plane_distance_(plane_distance),
+      cover_amid_(tile_program(files, "shaders/interleaved_amid.frag.glsl", tile)),
+      fill_smooth_(tile_program(files, "shaders/interleaved_smooth.frag.glsl", tile)),
+      add_(LightRound::programs(files, kLights, tile, {{"AMID_PLANE", "0"}})),
+      add_amid_(LightRound::programs(files, kLights, tile, {{"AMID_PLANE", "1"}})),
+      stencil_(gl::Format::kDepth32fStencil8, quads_of(tile, width, height).x,
+               quads_of(tile, width, height).y),
+      irradiance_{Quads(stencil_), Quads(stencil_)} {}
+
+void PixelIrradiance::add(const LightRound& round, bool is_first, const GBuffer& picture,
+                          const View& view) {
+  irradiance_[1].framebuffer.bind();
+  for (const int part : {kRough, kRoughAmidPlane}) {
+    const gl::Program& program = round.use(part == kRough ? add_ : add_amid_, is_first);
+    if (part == kRough) program.set("u_plane_distance", plane_distance_);
+    program.set("u_points", LightRound::kUnits, picture.points);
+    program.set("u_reflectances", LightRound::kUnits + 1, picture.reflectances);
+    irradiance_[0].set_in(program, LightRound::kUnits + 2);
+    apply({.stencil = StencilUse::kMatch, .reference = part}, view);
+    gl::draw_full_screen(no_vertices_);
+  }
+  std::swap(irradiance_[0], irradiance_[1]);
+}
+
+void PixelIrradiance::fill(const gl::Texture& middles, const GBuffer& picture, const View& view,
+                           std::span<const LightRound> rounds) {
+  // Into what the last of the rounds will draw into.
+  irradiance_[rounds.size() % 2].framebuffer.bind();
+  if (rounds.empty()) {
+    const float none[4] = {};
+    for (int colour = 0; colour < 3; ++colour) glClearBufferfv(GL_COLOR, colour, none);
+    return;
+  }
+  glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(view), kRough);
+  apply({.stencil = StencilUse::kMark, .reference = kRoughAmidPlane, .colour = false}, view);
+  cover_amid_.set("u_middles", 0, middles);
+  gl::draw_full_screen(no_vertices_);
+  apply({.stencil = StencilUse::kMark, .reference = kSmooth}, view);
+  fill_smooth_.set("u_middles", 0, middles);
+  gl::draw_full_screen(no_vertices_);
+  for (const LightRound& round : rounds) add(round, &round == &rounds.front(), picture, view);
+  reset_draw_state();
+  gl::check("filling pixels");
+}
+
+}  // namespace lantern
