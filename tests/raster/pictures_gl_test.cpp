@@ -248,6 +248,22 @@ TEST(Pictures, InterleavedTakesManyLightsOfEveryKind) {
   EXPECT_NEAR(comparison.mean_a.g / comparison.mean_b.g, 1.0, 0.002);
 }
 
+/// Nearly all lights are hidden: were those seen that no pixel around can tell of, edges would
+/// shine, 1.8 times the light.
+TEST(Pictures, InterleavedLeavesAChurchDarkThatTheSkyLightsThroughItsWindows) {
+  const auto folder = test::shared_folder("scenes/ogre");
+  if (!folder) GTEST_SKIP() << "the shared folder scenes/ogre is not there";
+  Scene scene = load_scene(*folder / "sibenik.mesh").scene;
+  scene.sky = Sky{};
+  RenderOptions options = small(48);
+  options.camera.eye = Vec3(12.0f, 3.0f, 0.0f);
+  options.camera.target = Vec3(-20.0f, 7.0f, 0.0f);
+  const Image exact = picture(scene, options, Backend::kGl);
+  options.tile = 4;
+  const Comparison comparison = compare(picture(scene, options, Backend::kGl), exact);
+  EXPECT_NEAR(comparison.mean_a.g / comparison.mean_b.g, 1.0, 0.1);
+}
+
 /// What maps miss is more slender than a texel, a fiftieth of a radian, and not next to a triangle
 /// that a texel sees.
 TEST(Pictures, MapsComeClose) {
