@@ -42,10 +42,12 @@ void main() {
     if (answer == kOpen) open |= bit;
     unknown ^= bit;
   } while (unknown != 0u);
-  do {
-    uint bit = lowest(open);
-    if (sees(number_of(bit), p)) seen |= bit;
-    open ^= bit;
-  } while (open != 0u);
+  if (open != 0u) {
+    do {
+      uint bit = lowest(open);
+      if (sees(number_of(bit), p)) seen |= bit;
+      open ^= bit;
+    } while (open != 0u);
+  }
   o_mask = bytes_of(seen);
 }

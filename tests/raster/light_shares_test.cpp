@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace lantern {
@@ -51,6 +52,42 @@ TEST(ShareOut, GivesEverySetOfABounceARunOfPaths) {
     }
     ASSERT_EQ(first.size(), 4u);
     EXPECT_EQ(first.back() - first.front(), 3u);
+  }
+}
+
+TEST(GroupShares, GivesEveryLightOnceInRoundsThatOneBlockHolds) {
+  VirtualLights lights = walked({700, 300});
+  const std::size_t count = lights.size();
+  lights.normal.assign(count, Vec3(0.0f, 0.0f, 1.0f));
+  lights.flux.assign(count, Rgb(1.0f));
+  lights.cone.assign(count, Vec2(0.0f));
+  for (std::size_t i = 0; i < count; ++i) {
+    lights.position[i] = Vec3(static_cast<float>(i), 0.0f, 0.0f);
+    lights.kind.push_back(i % 10 == 0 ? LightKind::kPoint : LightKind::kSurface);
+  }
+  for (const std::size_t shares : {4u, 16u, 64u}) {
+    std::multiset<float> places;
+    std::map<std::size_t, std::vector<const LightGroup*>> rounds;
+    const std::vector<LightGroup> groups = group_shares(lights, {}, 1.0f, shares, 5);
+    for (const LightGroup& group : groups) {
+      ASSERT_LT(group.share, shares);
+      rounds[group.round].push_back(&group);
+      for (const LightPoint& point : group.points) places.insert(point.x);
+    }
+    EXPECT_TRUE(std::is_sorted(groups.begin(), groups.end(),
+                               [](const auto& a, const auto& b) { return a.round < b.round; }));
+    ASSERT_EQ(places.size(), count);
+    for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(places.count(static_cast<float>(i)), 1u);
+    for (const auto& [number, round] : rounds) {
+      std::set<std::size_t> seen;
+      std::size_t in_round = 0;
+      for (const LightGroup* group : round) {
+        EXPECT_EQ(group->formula, round.front()->formula);
+        EXPECT_TRUE(seen.insert(group->share).second);
+        in_round += group->records.size();
+      }
+      EXPECT_LE(in_round, kLightsInRound) << number;
+    }
   }
 }
 

@@ -24,16 +24,8 @@ glm::ivec2 quads_of(int tile, int width, int height) {
 }  // namespace
 
 PixelIrradiance::Quads::Quads(const gl::Texture& stencil)
-    : red(gl::Format::kRgba32f, stencil.width(), stencil.height()),
-      green(gl::Format::kRgba32f, stencil.width(), stencil.height()),
-      blue(gl::Format::kRgba32f, stencil.width(), stencil.height()),
-      framebuffer({&red, &green, &blue}, &stencil) {}
-
-void PixelIrradiance::Quads::set_in(const gl::Program& program, int unit) const {
-  program.set("u_red", unit, red);
-  program.set("u_green", unit + 1, green);
-  program.set("u_blue", unit + 2, blue);
-}
+    : colours(stencil.width(), stencil.height()),
+      framebuffer({&colours.red, &colours.green, &colours.blue}, &stencil) {}
 
 PixelIrradiance::PixelIrradiance(const gl::ShaderFiles& files, int tile, int width, int height,
                                  float plane_distance)
@@ -54,7 +46,7 @@ void PixelIrradiance::add(const LightRound& round, bool is_first, const GBuffer&
     if (part == kRough) program.set("u_plane_distance", plane_distance_);
     program.set("u_points", LightRound::kUnits, picture.points);
     program.set("u_reflectances", LightRound::kUnits + 1, picture.reflectances);
-    irradiance_[0].set_in(program, LightRound::kUnits + 2);
+    irradiance_[0].colours.set_in(program, LightRound::kUnits + 2);
     apply({.stencil = StencilUse::kMatch, .reference = part}, view);
     gl::draw_full_screen(no_vertices_);
   }

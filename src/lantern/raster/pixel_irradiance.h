@@ -5,6 +5,7 @@
 
 #include "lantern/gl/objects.h"
 #include "lantern/gl/program.h"
+#include "lantern/raster/colour_quads.h"
 #include "lantern/raster/light_round.h"
 #include "lantern/raster/surfaces.h"
 #include "lantern/raster/view.h"
@@ -26,15 +27,15 @@ class PixelIrradiance {
   void fill(const gl::Texture& middles, const GBuffer& picture, const View& view,
             std::span<const LightRound> rounds);
   /// In W/m², for shaders/resolve.frag.glsl, on three texture units from `unit` on.
-  void set_in(const gl::Program& program, int unit) const { irradiance_[0].set_in(program, unit); }
+  void set_in(const gl::Program& program, int unit) const {
+    irradiance_[0].colours.set_in(program, unit);
+  }
 
  private:
-  /// Red, green and blue of up to four pixels of a row a texel.
   struct Quads {
-    gl::Texture red, green, blue;
+    ColourQuads colours;
     gl::Framebuffer framebuffer;
     explicit Quads(const gl::Texture& stencil);
-    void set_in(const gl::Program& program, int unit) const;
   };
 
   void add(const LightRound& round, bool is_first, const GBuffer& picture, const View& view);

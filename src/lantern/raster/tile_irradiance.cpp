@@ -8,17 +8,13 @@
 namespace lantern {
 
 TileIrradiance::Quads::Quads(int width, int height)
-    : red(gl::Format::kRgba32f, width, height),
-      green(gl::Format::kRgba32f, width, height),
-      blue(gl::Format::kRgba32f, width, height),
+    : colours(width, height),
       changes(gl::Format::kRgba32f, width, height),
-      framebuffer({&red, &green, &blue, &changes}) {}
+      framebuffer({&colours.red, &colours.green, &colours.blue, &changes}) {}
 
 void TileIrradiance::Quads::set_in(const gl::Program& program, int unit) const {
-  program.set("u_red", unit, red);
-  program.set("u_green", unit + 1, green);
-  program.set("u_blue", unit + 2, blue);
-  program.set("u_changes", unit + 3, changes);
+  colours.set_in(program, unit);
+  program.set("u_changes", unit + ColourQuads::kUnits, changes);
 }
 
 TileIrradiance::TileIrradiance(const gl::ShaderFiles& files, int tile, int columns, int rows,

@@ -5,6 +5,7 @@
 
 #include "lantern/gl/objects.h"
 #include "lantern/gl/program.h"
+#include "lantern/raster/colour_quads.h"
 #include "lantern/raster/light_round.h"
 #include "lantern/raster/surfaces.h"
 
@@ -31,9 +32,10 @@ class TileIrradiance {
   const gl::Texture& find_middles();
 
  private:
-  /// Red, green and blue of four tiles a texel, and how much of that changes around.
+  /// Of four tiles a texel, and how much of that changes around.
   struct Quads {
-    gl::Texture red, green, blue, changes;
+    ColourQuads colours;
+    gl::Texture changes;
     gl::Framebuffer framebuffer;
     Quads(int width, int height);
     void set_in(const gl::Program& program, int unit) const;
