@@ -98,8 +98,7 @@ int main(int argc, char** argv) {
   GBuffer g_buffer(kWidth, kHeight);
   gl::Texture mask(gl::Format::kRgba8, kWidth, kHeight);
   gl::Framebuffer mask_framebuffer({&mask}, &g_buffer.depth);
-  gl::Texture sum(gl::Format::kRgba32f, kWidth, kHeight),
-      irradiance(gl::Format::kRgba32ui, kWidth, kHeight);
+  gl::Texture sum(gl::Format::kRgba32f, kWidth, kHeight);
   gl::Framebuffer sum_framebuffer({&sum});
   gl::VertexArray none;
   gl::Buffer block(std::span<const LightRecord>(groups[0].records));
@@ -140,7 +139,6 @@ int main(int argc, char** argv) {
       with_block(group);
       shading.add(group, g_buffer, mask);
     }
-    shading.copy_to(irradiance);
   });
   const double map_drawing = cost([&] {
     maps.keep({});

@@ -1,16 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Each pixel of a tile of TILE x TILE has its share of the lights; the shares' pictures stand side
-// by side. Fragments make as many pixels of a row as a texel has channels, and textures hold them
-// so: red, green and blue of four neighbours. The quads of one tile are neighbours in a row there.
-
-const int kColumns = TILE < 4 ? TILE : 4;
-
-ivec2 quad_of(ivec2 pixel) {
-  return ivec2(pixel.x / kColumns * TILE + pixel.y % TILE, pixel.y / TILE);
-}
-ivec2 first_pixel_of(ivec2 quad) {
-  return ivec2(quad.x / TILE * kColumns, quad.y * TILE + quad.x % TILE);
-}
+// by side.
 
 /// Where a pixel stands among the shares' pictures, together of this size.
 ivec2 place_among_shares(ivec2 pixel, ivec2 size) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Covers the pixels of tiles amid their planes.
+#include "shaders/colour_quads.glsl"
 #include "shaders/interleaved.glsl"
 
 uniform highp usampler2D u_middles;  // see shaders/interleaved_middles.frag.glsl

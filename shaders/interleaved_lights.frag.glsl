@@ -2,7 +2,8 @@
 // Irradiance where tiles are not smooth: each light gives what it gives to this very point, were
 // nothing between, as far as it is seen from its share's pixels around on the same surface. With
 // AMID_PLANE these are all on it and face what the point does.
-#include "shaders/interleaved_quads.glsl"
+#include "shaders/colour_quads_out.glsl"
+#include "shaders/interleaved.glsl"
 #include "shaders/interleaved_masks.glsl"
 #include "shaders/octahedral.glsl"
 
@@ -13,7 +14,6 @@ uniform bool u_first_round;                // there is nothing yet
 uniform float u_plane_distance;            // as far off is another surface
 
 Point point_at(ivec2 at) {
-  at = min(at, textureSize(u_points, 0) - 1);
   uvec4 bits = texelFetch(u_points, at, 0);
   return Point(uintBitsToFloat(bits.xyz), unpack_unit(bits.w),
                unpack_unit(texelFetch(u_reflectances, at, 0).w));
@@ -41,42 +41,39 @@ Witness witness(ivec2 at, ivec2 first) {
                  1.0 / (dx * dx + dy * dy + 1e-6));
 }
 #else
-/// 0 for a point on the surface of p, else how little it is like one that is.
-float strangeness(Point p, Point other) {
-  // Beyond 30 degrees it is another side of things.
-  const float kOtherSide = 0.866;
-  float alike = dot(p.shading, other.shading);
-  float off = abs(dot(p.geometric, other.position - p.position)) / u_plane_distance;
-  return alike > kOtherSide && off < 1.0 ? 0.0 : 1.0 - alike + 0.01 * off;
-}
-
-/// As near witnesses are they count.
-float nearness_of(Point p, Point other) {
-  vec3 way = (other.position - p.position) / u_plane_distance;
-  return 1.0 / (dot(way, way) + 1e-8);
-}
-
 /// What a pixel of a share knows of its lights.
 struct Witness {
-  Point point;           // without normals if there is none
+  vec3 normal;           // geometric; 0 if there is no surface
+  float height;          // along it
   uint seen;             // bits of lights
   vec4 strange, weight;  // to each of the pixels
 };
 
+/// How strange a point is to p: 0 on its surface, else how little it is like one that is; and what
+/// it counts, 1 / distance².
+vec2 strange_and_weight(Point p, Point other) {
+  // Beyond 30 degrees it is another side of things.
+  const float kOtherSide = 0.866;
+  vec3 way = other.position - p.position;
+  float alike = dot(p.shading, other.shading);
+  float off = abs(dot(p.geometric, way)) / u_plane_distance;
+  float nearest = 1e-4 * u_plane_distance;
+  return vec2(alike > kOtherSide && off < 1.0 ? 0.0 : 1.0 - alike + 0.01 * off,
+              1.0 / (dot(way, way) + nearest * nearest));
+}
+
 Witness witness(ivec2 at, Pixels pixels) {
+  ivec2 inside = clamp(at, ivec2(0), textureSize(u_points, 0) - 1);
+  Point point = point_at(inside);
+  vec2 to0 = strange_and_weight(pixels.p0, point), to1 = strange_and_weight(pixels.p1, point);
+  vec2 to2 = strange_and_weight(pixels.p2, point), to3 = strange_and_weight(pixels.p3, point);
+  bool is_none = inside != at || texelFetch(u_points, inside, 0) == uvec4(0u);  // or the sky
   Witness w;
-  w.point = Point(vec3(0.0), vec3(0.0), vec3(0.0));
-  w.seen = 0u;
-  w.strange = vec4(1e30);
-  w.weight = vec4(0.0);
-  if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, textureSize(u_points, 0)))) return w;
-  if (texelFetch(u_points, at, 0) == uvec4(0u)) return w;  // the sky
-  w.point = point_at(at);
-  w.seen = mask_at(place_among_shares(at, textureSize(u_masks, 0)));
-  w.strange = vec4(strangeness(pixels.p0, w.point), strangeness(pixels.p1, w.point),
-                   strangeness(pixels.p2, w.point), strangeness(pixels.p3, w.point));
-  w.weight = vec4(nearness_of(pixels.p0, w.point), nearness_of(pixels.p1, w.point),
-                  nearness_of(pixels.p2, w.point), nearness_of(pixels.p3, w.point));
+  w.normal = is_none ? vec3(0.0) : point.geometric;
+  w.height = dot(w.normal, point.position);
+  w.seen = mask_at(place_among_shares(inside, textureSize(u_masks, 0)));
+  w.strange = is_none ? vec4(1e30) : vec4(to0.x, to1.x, to2.x, to3.x);
+  w.weight = is_none ? vec4(0.0) : vec4(to0.y, to1.y, to2.y, to3.y);
   return w;
 }
 
@@ -84,18 +81,24 @@ Witness witness(ivec2 at, Pixels pixels) {
 vec4 heard(Witness w, vec4 least) { return w.weight * vec4(lessThanEqual(w.strange, least)); }
 
 /// Whether the light could be seen, were nothing between.
-float faces(Witness w, Light light) {
-  return dot(w.point.geometric, way_to(light, w.point)) > 0.0 ? 1.0 : 0.0;
+bool faces(Witness w, Light light) {
+#if KIND == 2
+  return dot(w.normal, light.place.xyz) < 0.0;
+#else
+  return dot(w.normal, light.place.xyz) > w.height;
+#endif
 }
 #endif
 
 void main() {
   ivec2 at = first_pixel_of(ivec2(gl_FragCoord.xy));
-  Pixels pixels = Pixels(point_at(at), point_at(at + ivec2(1, 0)), point_at(at + ivec2(2, 0)),
-                         point_at(at + ivec2(3, 0)));
+  ivec2 last = textureSize(u_points, 0) - 1;
+  Pixels pixels =
+      Pixels(point_at(min(at, last)), point_at(min(at + ivec2(1, 0), last)),
+             point_at(min(at + ivec2(2, 0), last)), point_at(min(at + ivec2(3, 0), last)));
   vec3 sum0 = vec3(0.0), sum1 = vec3(0.0), sum2 = vec3(0.0), sum3 = vec3(0.0);
 #if !AMID_PLANE
-  vec4 told = vec4(0.0), untold = vec4(0.0);  // of what lights give, were nothing between
+  vec4 all_of_it = vec4(0.0), untold = vec4(0.0);  // of what lights give, were nothing between
 #endif
   for (int share = 0; share < TILE * TILE; ++share) {
     uvec2 lights = texelFetch(u_lights_of, ivec2(share, 0), 0).rg;
@@ -121,20 +124,26 @@ void main() {
     vec4 hear_c = heard(c, least), hear_d = heard(d, least);
 #endif
     uvec4 seen_by = uvec4(a.seen, b.seen, c.seen, d.seen);
+#if AMID_PLANE
+    for (uint left = seen_by_any(seen_by, count); left != 0u; left ^= lowest(left)) {
+      int i = number_of(lowest(left));
+#else
     for (int i = 0; i < count; ++i) {
+#endif
       Light light = u_lights[first + i];
 #if AMID_PLANE
       vec4 see = vec4(bit(seen_by, i));
       vec4 seen =
           sharpened(see.x * a.weight + see.y * b.weight + see.z * c.weight + see.w * d.weight);
 #else
-      vec4 can = vec4(faces(a, light), faces(b, light), faces(c, light), faces(d, light));
-      vec4 do_see = can * vec4(bit(seen_by, i));
+      bvec4 faces_it = bvec4(faces(a, light), faces(b, light), faces(c, light), faces(d, light));
+      uvec4 sees_it = bit(seen_by, i) & uvec4(faces_it);
+      vec4 can = vec4(faces_it), do_see = vec4(sees_it);
       vec4 could = can.x * hear_a + can.y * hear_b + can.z * hear_c + can.w * hear_d;
       vec4 seen = do_see.x * hear_a + do_see.y * hear_b + do_see.z * hear_c + do_see.w * hear_d;
       seen = sharpened(seen / max(could, 1e-30));
       // Of what these cannot tell the others may.
-      bool any_sees = any(greaterThan(do_see, vec4(0.0)));
+      bool any_sees = (sees_it.x | sees_it.y | sees_it.z | sees_it.w) != 0u;
       seen = mix(vec4(any_sees), seen, vec4(greaterThan(could, vec4(0.0))));
 #endif
       vec3 e0 = irradiance_from(light, pixels.p0), e1 = irradiance_from(light, pixels.p1);
@@ -144,16 +153,15 @@ void main() {
       sum2 += seen.z * e2;
       sum3 += seen.w * e3;
 #if !AMID_PLANE
-      bool none_can = all(equal(can, vec4(0.0)));
-      vec4 all_of_it = vec4(brightness(e0), brightness(e1), brightness(e2), brightness(e3));
-      told += none_can ? vec4(0.0) : all_of_it;
-      untold += none_can ? all_of_it : vec4(0.0);
+      vec4 gives = vec4(brightness(e0), brightness(e1), brightness(e2), brightness(e3));
+      all_of_it += gives;
+      untold += any(faces_it) ? vec4(0.0) : gives;
 #endif
     }
   }
 #if !AMID_PLANE
   // Of lights that nobody could see as much is seen as of the others.
-  vec4 more = 1.0 + untold / max(told, 1e-30);
+  vec4 more = all_of_it / max(all_of_it - untold, 1e-30 + 1e-6 * all_of_it);
   sum0 *= more.x;
   sum1 *= more.y;
   sum2 *= more.z;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The lights of a round, as many as go into one block, and which of them are seen.
+#include "shaders/bits.glsl"
 #include "shaders/lights.glsl"
 
 uniform sampler2D u_masks;             // of the shares' pictures
@@ -9,6 +10,11 @@ uint mask_at(ivec2 place) {
   vec4 bytes = texelFetch(u_masks, place, 0);
   uvec2 words = uvec2(bytes.rb * 255.0 + bytes.ga * 65280.0 + 0.5);
   return words.x | (words.y << 16);
+}
+
+/// Lights of a share with so many that any of the four sees.
+uint seen_by_any(uvec4 seen, int count) {
+  return (seen.x | seen.y | seen.z | seen.w) & lowest_bits(count);
 }
 
 uvec4 bit(uvec4 bits, int i) { return (bits >> uint(i)) & 1u; }

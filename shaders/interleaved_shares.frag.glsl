@@ -61,7 +61,8 @@ void main() {
     joined = where_joined(joins, is_above ? kBelow : kAbove);
     over = (over & joined) | (own & ~joined);
     vec2 away = abs(vec2(off_middle(of_share.x), off_middle(of_share.y)));
-    for (int i = 0; i < count; ++i) {
+    for (uint left = seen_by_any(own | beside | over, count); left != 0u; left ^= lowest(left)) {
+      int i = number_of(lowest(left));
       Light light = u_lights[first_light + i];
       vec4 seen_here = vec4(bit(own, i)), seen_beside = vec4(bit(beside, i));
       vec4 seen_over = vec4(bit(over, i));

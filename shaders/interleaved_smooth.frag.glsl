@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Irradiance where the surface is smooth, from that of the middles of its tile and of those around;
 // where these are not parts of its plane, as it goes on from the other side.
-#include "shaders/interleaved_quads.glsl"
+#include "shaders/colour_quads_out.glsl"
+#include "shaders/interleaved.glsl"
 
 uniform highp usampler2D u_middles;  // see shaders/interleaved_middles.frag.glsl
 

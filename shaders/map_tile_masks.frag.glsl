@@ -103,7 +103,7 @@ void main() {
   vec3 normal = unpack_unit(normals.x);
   vec2 off = uintBitsToFloat(normals.yz);
 #if GROUPS
-  uint seen = 0u, unknown = 0xffffffffu >> uint(32 - u_count);
+  uint seen = 0u, unknown = lowest_bits(u_count);
 #else
   uvec2 before = texelFetch(u_told, tile / kTilesInGroup, 0).xy;
   uint seen = before.x, unknown = before.y;

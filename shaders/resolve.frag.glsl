@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Radiance: what the surface emits and what it reflects of its irradiance.
+#include "shaders/colour_quads.glsl"
+
 uniform highp usampler2D u_reflectances;
 uniform sampler2D u_emissions;
-#ifdef TILE
-#include "shaders/interleaved.glsl"
 uniform sampler2D u_red, u_green, u_blue;
+
+layout(location = 0) out vec4 o_radiance;
 
 vec3 irradiance_of(ivec2 at) {
   ivec2 quad = quad_of(at);
@@ -12,13 +14,6 @@ vec3 irradiance_of(ivec2 at) {
   return vec3(texelFetch(u_red, quad, 0)[i], texelFetch(u_green, quad, 0)[i],
               texelFetch(u_blue, quad, 0)[i]);
 }
-#else
-uniform highp usampler2D u_irradiance;
-
-vec3 irradiance_of(ivec2 at) { return uintBitsToFloat(texelFetch(u_irradiance, at, 0).rgb); }
-#endif
-
-layout(location = 0) out vec4 o_radiance;
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);

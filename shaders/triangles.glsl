@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Texels row by row, as in the textures of triangle_texture.h, whose widths are powers of two: Mesa
 // takes long to divide integers.
-
-/// Of positive numbers.
-int exponent_of(float number) { return int(floatBitsToUint(number) >> 23) - 127; }
-
-uint lowest(uint bits) { return bits & (~bits + 1u); }
-/// The number of a bit; 0 of none.
-int number_of(uint bit) { return max(exponent_of(float(bit)), 0); }
+#include "shaders/bits.glsl"
 
 ivec2 texel_number(int i, int width) { return ivec2(i & (width - 1), i >> number_of(uint(width))); }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Red, green and blue of up to four neighbours of a row a texel: shaders/interleaved_quads.glsl.
+// Red, green and blue of up to four neighbours of a row a texel: shaders/colour_quads.glsl.
 #pragma once
 
 #include "lantern/gl/objects.h"

@@ -43,6 +43,8 @@ void apply(const DrawState& state, const View& view) {
     glDisable(GL_DEPTH_CLAMP);
   }
   glFrontFace(state.swap_sides ? GL_CCW : GL_CW);
+  enable(GL_CULL_FACE, state.sides != SeenSide::kBoth);
+  glCullFace(state.sides == SeenSide::kFront ? GL_BACK : GL_FRONT);
   enable(GL_STENCIL_TEST, state.stencil != StencilUse::kNone);
   constexpr GLuint kAllBits = 0xff;
   switch (state.stencil) {
@@ -89,6 +91,7 @@ void reset_draw_state() {
     glDisable(GL_DEPTH_CLAMP);
   }
   glFrontFace(GL_CCW);
+  glDisable(GL_CULL_FACE);
   glDisable(GL_STENCIL_TEST);
 }
 

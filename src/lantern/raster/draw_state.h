@@ -2,6 +2,7 @@
 // What GL is told before something is drawn. What is not said is off.
 #pragma once
 
+#include "lantern/raster/bodies.h"
 #include "lantern/raster/view.h"
 
 namespace lantern {
@@ -26,7 +27,8 @@ struct DrawState {
   DepthUse depth = DepthUse::kNone;
   StencilUse stencil = StencilUse::kNone;
   int reference = 0;
-  bool swap_sides = false;  // fronts are backs
+  bool swap_sides = false;           // fronts are backs
+  SeenSide sides = SeenSide::kBoth;  // what is not this side of its triangle is left out
   bool colour = true;
   bool add = false;
   bool depth_clamp = false;

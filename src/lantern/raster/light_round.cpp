@@ -13,11 +13,9 @@ constexpr GLuint kLightsBinding = 0;
 
 }  // namespace
 
-std::vector<gl::Definition> tile_definitions(int tile) { return {{"TILE", std::to_string(tile)}}; }
-
 gl::Program tile_program(const gl::ShaderFiles& files, const char* fragment, int tile,
                          const std::vector<gl::Definition>& more) {
-  std::vector<gl::Definition> definitions = tile_definitions(tile);
+  std::vector<gl::Definition> definitions = {{"TILE", std::to_string(tile)}};
   definitions.insert(definitions.end(), more.begin(), more.end());
   return gl::Program(files, "shaders/full_screen.vert.glsl", fragment, definitions);
 }

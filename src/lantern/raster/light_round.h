@@ -13,9 +13,7 @@
 
 namespace lantern {
 
-/// What shaders are defined with that know of tiles of `tile` x `tile` pixels.
-std::vector<gl::Definition> tile_definitions(int tile);
-/// Covers the framebuffer.
+/// Covers the framebuffer; knows of tiles of `tile` x `tile` pixels.
 gl::Program tile_program(const gl::ShaderFiles& files, const char* fragment, int tile,
                          const std::vector<gl::Definition>& more = {});
 

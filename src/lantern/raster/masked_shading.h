@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Adds up what lights give to the pixels that see them, 32 lights at a time, in 32-bit floats. The
-// picture is cut into four strips of rows and a fragment shades a pixel of each; see
-// shaders/shade_masked.frag.glsl.
+// Adds up what lights give to the pixels that see them, 32 lights at a time, in 32-bit floats.
 #pragma once
 
 #include "lantern/gl/objects.h"
 #include "lantern/gl/program.h"
+#include "lantern/raster/colour_quads.h"
 #include "lantern/raster/raster_lights.h"
 #include "lantern/raster/surfaces.h"
 
@@ -22,20 +21,18 @@ class MaskedShading {
   void clear();
   /// And what the lights of the mask's bits give.
   void add(const LightGroup& group, const GBuffer& g_buffer, const gl::Texture& mask);
-  /// All strips into one picture (RGBA32UI): the bits of three floats and 0.
-  void copy_to(const gl::Texture& irradiance) const;
+  /// In W/m², for shaders/resolve.frag.glsl.
+  const ColourQuads& irradiance() const { return sums_[0].colours; }
 
  private:
-  static constexpr int kStrips = 4;
-  struct Strips {
-    std::array<gl::Texture, kStrips> textures;
+  struct Quads {
+    ColourQuads colours;
     gl::Framebuffer framebuffer;
-    Strips(int width, int rows);
+    Quads(int width, int height);
   };
 
-  int width_, height_, rows_;
   std::array<gl::Program, kLightFormulas> shade_;
-  std::array<Strips, 2> sums_;  // what there is, and that with a group of lights more
+  std::array<Quads, 2> sums_;  // what there is, and that with a group of lights more
   gl::VertexArray no_vertices_;
 };
 

@@ -15,7 +15,7 @@ constexpr int kRough = 0, kRoughAmidPlane = 1, kSmooth = 2;
 
 constexpr const char* kLights = "shaders/interleaved_lights.frag.glsl";
 
-/// How many there are; see shaders/interleaved.glsl.
+/// How many there are; see shaders/colour_quads.glsl.
 glm::ivec2 quads_of(int tile, int width, int height) {
   const int columns = std::min(tile, 4);
   return {(width + columns - 1) / columns * tile, (height + tile - 1) / tile};

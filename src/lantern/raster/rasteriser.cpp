@@ -65,11 +65,6 @@ struct Target {
       : texture(format, width, height), framebuffer({&texture}) {}
 };
 
-gl::Program resolve_program(const gl::ShaderFiles& files, int tile) {
-  return gl::Program(files, "shaders/full_screen.vert.glsl", "shaders/resolve.frag.glsl",
-                     tile > 1 ? tile_definitions(tile) : std::vector<gl::Definition>());
-}
-
 }  // namespace
 
 struct Rasteriser::State {
@@ -85,7 +80,6 @@ struct Rasteriser::State {
   std::optional<Lighting> lighting;  // or, where pixels have lights of their own,
   std::optional<Interleaving> interleaving;
   gl::Program resolve;
-  gl::Texture irradiance;  // where every pixel has all lights
   Target radiance;
   gl::VertexArray no_vertices;
 
@@ -99,8 +93,7 @@ struct Rasteriser::State {
                      .range = gl.has(gl::kClipControl) ? ClipRange::kFarIs0 : ClipRange::kFarIs1},
         surfaces(scene, all, files),
         solid(solid_part(scene, all)),
-        resolve(resolve_program(files, with.tile)),
-        irradiance(gl::Format::kRgba32ui, with.width, with.height),
+        resolve(tile_program(files, "shaders/resolve.frag.glsl", with.tile)),
         radiance(gl::Format::kRgba32f, with.width, with.height) {
     const bool by_maps = with.shadows == ShadowMethod::kMaps;
     const bool none_solid = solid && solid->triangles.empty();
@@ -155,7 +148,6 @@ struct Rasteriser::State {
       interleaving->draw(camera, place_in_pixel(n), groups, group_done);
     } else {
       lighting->draw(view_of_sample(camera, n), groups, group_done);
-      lighting->shading().copy_to(irradiance);
     }
     times.begin(Stage::kResolve);
     resolve.set("u_reflectances", 0, whole_g_buffer().reflectances);
@@ -163,7 +155,7 @@ struct Rasteriser::State {
     if (interleaving) {
       interleaving->set_irradiance(resolve, 2);
     } else {
-      resolve.set("u_irradiance", 2, irradiance);
+      lighting->shading().irradiance().set_in(resolve, 2);
     }
     radiance.framebuffer.bind();
     gl::draw_full_screen(no_vertices);

@@ -4,6 +4,8 @@
 #include "lantern/gl/check.h"
 #include "lantern/raster/corner_buffer.h"
 #include "lantern/raster/draw_state.h"
+#include "lantern/raster/edge_list.h"
+#include "lantern/raster/neighbours.h"
 #include "lantern/scene/surface.h"
 #include "lantern/trace/tracer.h"
 
@@ -11,6 +13,7 @@
 #include <array>
 #include <numeric>
 #include <span>
+#include <tuple>
 
 namespace lantern {
 namespace {
@@ -55,6 +58,33 @@ GBuffer::GBuffer(int width, int height)
       depth(gl::Format::kDepth32fStencil8, width, height),
       framebuffer({&points, &reflectances, &emissions}, &depth) {}
 
+/// The order in which triangles are drawn.
+std::vector<std::uint32_t> Surfaces::make_batches(const World& world) {
+  std::vector<std::uint32_t> order(world.size());
+  std::iota(order.begin(), order.end(), 0u);
+  // Walls are behind all else: they come last, so that what is seen of them alone is written.
+  const std::vector<Vec4> walls = find_walls(world);
+  std::vector<std::uint8_t> is_in_wall(world.size());
+  for (const std::uint32_t t : order) is_in_wall[t] = wall_of(world, t, walls) ? 1 : 0;
+  const auto batch_of = [&](std::uint32_t t) {
+    return std::tie(is_in_wall[t], world.materials[t]);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return batch_of(a) < batch_of(b); });
+  const auto neighbours = find_neighbours(scene_, world);
+  const std::vector<std::uint32_t> part_of = find_parts(neighbours);
+  for (std::size_t first = 0; first < order.size();) {
+    std::size_t end = first;
+    while (end < order.size() && batch_of(order[end]) == batch_of(order[first])) ++end;
+    batches_.push_back(
+        {index(world.materials[order[first]]),
+         make_bodies(world, neighbours, part_of, std::span(order).subspan(first, end - first),
+                     static_cast<std::uint32_t>(first))});
+    first = end;
+  }
+  return order;
+}
+
 Surfaces::Surfaces(const Scene& scene, const World& world, const gl::ShaderFiles& files)
     : scene_(scene),
       lift_(glm::length(off_surface(Vec3(0.0f), Vec3(1.0f, 0.0f, 0.0f), world.coordinate_scale()))),
@@ -71,19 +101,10 @@ Surfaces::Surfaces(const Scene& scene, const World& world, const gl::ShaderFiles
   };
   if (scene.sky) use(scene.sky->texture);
 
-  std::vector<std::uint32_t> order(world.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return world.materials[a] < world.materials[b];
-  });
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const std::size_t material = index(world.materials[order[i]]);
-    if (batches_.empty() || batches_.back().material != material) {
-      batches_.push_back({material, static_cast<GLint>(3 * i), 0});
-      use(scene.materials[material].reflectance_texture);
-      use(scene.materials[material].emission_texture);
-    }
-    batches_.back().count += 3;
+  const std::vector<std::uint32_t> order = make_batches(world);
+  for (const Batch& batch : batches_) {
+    use(scene.materials[batch.material].reflectance_texture);
+    use(scene.materials[batch.material].emission_texture);
   }
 
   buffers_.reserve(6);
@@ -143,6 +164,31 @@ void Surfaces::set_view(const gl::Program& program, const View& view) const {
   program.set("u_lift", lift_);
 }
 
+/// What may be seen of a batch, those with the same sides that follow each other at once.
+void Surfaces::draw_bodies(const Batch& batch, const View& view) {
+  const std::vector<Vec4> sides = sides_of(view);
+  GLint first = 0;
+  GLsizei count = 0;
+  SeenSide side = SeenSide::kBoth;
+  const auto draw = [&] {
+    if (count == 0) return;
+    apply({.depth = DepthUse::kDraw, .sides = side}, view);
+    glDrawArrays(GL_TRIANGLES, first, count);
+    count = 0;
+  };
+  for (const Body& body : batch.bodies) {
+    if (!may_lie_inside(body, sides)) continue;
+    const SeenSide seen = seen_side(body, view.eye);
+    if (static_cast<GLint>(3 * body.first) != first + count || seen != side) {
+      draw();
+      first = static_cast<GLint>(3 * body.first);
+      side = seen;
+    }
+    count += static_cast<GLsizei>(3 * body.count);
+  }
+  draw();
+}
+
 void Surfaces::draw(const View& view, const GBuffer& target) const {
   target.framebuffer.bind();
   set_viewport(view);
@@ -152,7 +198,6 @@ void Surfaces::draw(const View& view, const GBuffer& target) const {
   glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(view), 0);
   glDisable(GL_SCISSOR_TEST);
 
-  apply({.depth = DepthUse::kDraw}, view);
   set_view(surface_, view);
   vertices_->bind();
   // What the vertices do not have: no normal of their own, white.
@@ -178,7 +223,7 @@ void Surfaces::draw(const View& view, const GBuffer& target) const {
       set_look_up(program, "u_emission_texture", "u_emission_look_up", 1,
                   material.emission_texture);
     }
-    glDrawArrays(GL_TRIANGLES, batch.first, batch.count);
+    draw_bodies(batch, view);
   }
   // Last, so that only what is seen of it is looked up.
   apply({.depth = DepthUse::kFillGaps}, view);

@@ -4,6 +4,7 @@
 
 #include "lantern/gl/objects.h"
 #include "lantern/gl/program.h"
+#include "lantern/raster/bodies.h"
 #include "lantern/raster/view.h"
 #include "lantern/scene/scene.h"
 #include "lantern/scene/world.h"
@@ -39,9 +40,10 @@ class Surfaces {
  private:
   struct Batch {
     std::size_t material;
-    GLint first;
-    GLsizei count;
+    std::vector<Body> bodies;
   };
+  std::vector<std::uint32_t> make_batches(const World& world);
+  static void draw_bodies(const Batch& batch, const View& view);
   void set_view(const gl::Program& program, const View& view) const;
   /// A texture on a unit and how it is looked up.
   void set_look_up(const gl::Program& program, const char* sampler, const char* how, int unit,

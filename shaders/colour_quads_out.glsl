@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is written of a quad of pixels: see shaders/interleaved.glsl.
-#include "shaders/interleaved.glsl"
+// What is written of a quad of pixels.
+#include "shaders/colour_quads.glsl"
 
 layout(location = 0) out vec4 o_red;
 layout(location = 1) out vec4 o_green;
