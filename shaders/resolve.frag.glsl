@@ -1,27 +1,29 @@
 // SPDX-License-Identifier: MIT
 // Radiance: what the surface emits and what it reflects of its irradiance.
-#include "shaders/colour_quads.glsl"
+#include "shaders/colour_quads_out.glsl"
 
 uniform highp usampler2D u_reflectances;
 uniform sampler2D u_emissions;
-uniform sampler2D u_red, u_green, u_blue;
+uniform sampler2D u_red, u_green, u_blue;  // irradiance
 
-layout(location = 0) out vec4 o_radiance;
-
-vec3 irradiance_of(ivec2 at) {
-  ivec2 quad = quad_of(at);
-  int i = at.x % kColumns;
-  return vec3(texelFetch(u_red, quad, 0)[i], texelFetch(u_green, quad, 0)[i],
-              texelFetch(u_blue, quad, 0)[i]);
+vec3 radiance_of(ivec2 at, vec3 irradiance) {
+  at = min(at, textureSize(u_emissions, 0) - 1);
+  const float kInvPi = 0.318309886183791;
+  vec4 emission = texelFetch(u_emissions, at, 0);
+  if (emission.a == 0.0) return emission.rgb;  // the sky
+  vec3 reflectance = uintBitsToFloat(texelFetch(u_reflectances, at, 0).xyz);
+  return emission.rgb + reflectance * irradiance * kInvPi;
 }
 
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  const float kInvPi = 0.318309886183791;
-  vec4 radiance = texelFetch(u_emissions, at, 0);
-  if (radiance.a != 0.0) {
-    vec3 reflectance = uintBitsToFloat(texelFetch(u_reflectances, at, 0).xyz);
-    radiance.rgb += reflectance * irradiance_of(at) * kInvPi;
-  }
-  o_radiance = radiance;
+  ivec2 quad = ivec2(gl_FragCoord.xy), first = first_pixel_of(quad);
+  vec4 red = texelFetch(u_red, quad, 0), green = texelFetch(u_green, quad, 0);
+  vec4 blue = texelFetch(u_blue, quad, 0);
+  vec3 radiance0 = radiance_of(first, vec3(red.x, green.x, blue.x));
+  vec3 radiance1 = radiance_of(first + ivec2(1, 0), vec3(red.y, green.y, blue.y));
+  vec3 radiance2 = radiance_of(first + ivec2(2, 0), vec3(red.z, green.z, blue.z));
+  vec3 radiance3 = radiance_of(first + ivec2(3, 0), vec3(red.w, green.w, blue.w));
+  o_red = vec4(radiance0.r, radiance1.r, radiance2.r, radiance3.r);
+  o_green = vec4(radiance0.g, radiance1.g, radiance2.g, radiance3.g);
+  o_blue = vec4(radiance0.b, radiance1.b, radiance2.b, radiance3.b);
 }

@@ -36,11 +36,8 @@ class Interleaving {
             const std::function<bool()>& group_done);
 
   const GBuffer& g_buffer() const { return whole_; }
-  /// The irradiance of all pixels in W/m², for shaders/resolve.frag.glsl, on three texture units
-  /// from `unit` on.
-  void set_irradiance(const gl::Program& program, int unit) const {
-    irradiance_.set_in(program, unit);
-  }
+  /// Of all pixels, in W/m².
+  const ColourQuads& irradiance() const { return irradiance_.irradiance(); }
 
  private:
   /// The pictures of all shares side by side: their depth or, if asked for, all of the G-buffer.

@@ -9,8 +9,6 @@
 namespace lantern {
 namespace {
 
-constexpr int kPixels = 4;  // of a quad, as in shaders/colour_quads.glsl where TILE is 1
-
 gl::Program shade_program(const gl::ShaderFiles& files, LightFormula formula,
                           GLuint lights_binding) {
   gl::Program program(files, "shaders/full_screen.vert.glsl", "shaders/shade_masked.frag.glsl",
@@ -21,22 +19,15 @@ gl::Program shade_program(const gl::ShaderFiles& files, LightFormula formula,
 
 }  // namespace
 
-MaskedShading::Quads::Quads(int width, int height)
-    : colours(width, height), framebuffer({&colours.red, &colours.green, &colours.blue}) {}
-
 MaskedShading::MaskedShading(const gl::ShaderFiles& files, int width, int height,
                              GLuint lights_binding)
     : shade_{shade_program(files, LightFormula::kSurface, lights_binding),
              shade_program(files, LightFormula::kPunctual, lights_binding),
              shade_program(files, LightFormula::kDirectional, lights_binding)},
-      sums_{Quads((width + kPixels - 1) / kPixels, height),
-            Quads((width + kPixels - 1) / kPixels, height)} {}
+      sums_{QuadTarget(QuadLayout{1, width, height}.size()),
+            QuadTarget(QuadLayout{1, width, height}.size())} {}
 
-void MaskedShading::clear() {
-  sums_[0].framebuffer.bind();
-  const float none[4] = {};
-  for (int colour = 0; colour < 3; ++colour) glClearBufferfv(GL_COLOR, colour, none);
-}
+void MaskedShading::clear() { sums_[0].clear(); }
 
 void MaskedShading::add(const LightGroup& group, const GBuffer& g_buffer, const gl::Texture& mask) {
   const gl::Program& program = shade_[static_cast<std::size_t>(group.formula)];

@@ -21,18 +21,12 @@ class MaskedShading {
   void clear();
   /// And what the lights of the mask's bits give.
   void add(const LightGroup& group, const GBuffer& g_buffer, const gl::Texture& mask);
-  /// In W/m², for shaders/resolve.frag.glsl.
-  const ColourQuads& irradiance() const { return sums_[0].colours; }
+  /// In W/m².
+  const QuadTarget& irradiance() const { return sums_[0]; }
 
  private:
-  struct Quads {
-    ColourQuads colours;
-    gl::Framebuffer framebuffer;
-    Quads(int width, int height);
-  };
-
   std::array<gl::Program, kLightFormulas> shade_;
-  std::array<Quads, 2> sums_;  // what there is, and that with a group of lights more
+  std::array<QuadTarget, 2> sums_;  // what there is, and that with a group of lights more
   gl::VertexArray no_vertices_;
 };
 

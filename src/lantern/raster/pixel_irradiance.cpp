@@ -15,17 +15,7 @@ constexpr int kRough = 0, kRoughAmidPlane = 1, kSmooth = 2;
 
 constexpr const char* kLights = "shaders/interleaved_lights.frag.glsl";
 
-/// How many there are; see shaders/colour_quads.glsl.
-glm::ivec2 quads_of(int tile, int width, int height) {
-  const int columns = std::min(tile, 4);
-  return {(width + columns - 1) / columns * tile, (height + tile - 1) / tile};
-}
-
 }  // namespace
-
-PixelIrradiance::Quads::Quads(const gl::Texture& stencil)
-    : colours(stencil.width(), stencil.height()),
-      framebuffer({&colours.red, &colours.green, &colours.blue}, &stencil) {}
 
 PixelIrradiance::PixelIrradiance(const gl::ShaderFiles& files, int tile, int width, int height,
                                  float plane_distance)
@@ -34,9 +24,9 @@ PixelIrradiance::PixelIrradiance(const gl::ShaderFiles& files, int tile, int wid
       fill_smooth_(tile_program(files, "shaders/interleaved_smooth.frag.glsl", tile)),
       add_(LightRound::programs(files, kLights, tile, {{"AMID_PLANE", "0"}})),
       add_amid_(LightRound::programs(files, kLights, tile, {{"AMID_PLANE", "1"}})),
-      stencil_(gl::Format::kDepth32fStencil8, quads_of(tile, width, height).x,
-               quads_of(tile, width, height).y),
-      irradiance_{Quads(stencil_), Quads(stencil_)} {}
+      layout_{tile, width, height},
+      stencil_(gl::Format::kDepth32fStencil8, layout_.size().x, layout_.size().y),
+      irradiance_{QuadTarget(layout_.size(), &stencil_), QuadTarget(layout_.size(), &stencil_)} {}
 
 void PixelIrradiance::add(const LightRound& round, bool is_first, const GBuffer& picture,
                           const View& view) {
@@ -55,13 +45,12 @@ void PixelIrradiance::add(const LightRound& round, bool is_first, const GBuffer&
 
 void PixelIrradiance::fill(const gl::Texture& middles, const GBuffer& picture, const View& view,
                            std::span<const LightRound> rounds) {
-  // Into what the last of the rounds will draw into.
-  irradiance_[rounds.size() % 2].framebuffer.bind();
   if (rounds.empty()) {
-    const float none[4] = {};
-    for (int colour = 0; colour < 3; ++colour) glClearBufferfv(GL_COLOR, colour, none);
+    irradiance_[0].clear();
     return;
   }
+  // Into what the last of the rounds will draw into.
+  irradiance_[rounds.size() % 2].framebuffer.bind();
   glClearBufferfi(GL_DEPTH_STENCIL, 0, far_depth(view), kRough);
   apply({.stencil = StencilUse::kMark, .reference = kRoughAmidPlane, .colour = false}, view);
   cover_amid_.set("u_middles", 0, middles);

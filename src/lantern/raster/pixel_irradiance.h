@@ -26,25 +26,18 @@ class PixelIrradiance {
   /// `middles`: see TileIrradiance. No rounds: no light.
   void fill(const gl::Texture& middles, const GBuffer& picture, const View& view,
             std::span<const LightRound> rounds);
-  /// In W/m², for shaders/resolve.frag.glsl, on three texture units from `unit` on.
-  void set_in(const gl::Program& program, int unit) const {
-    irradiance_[0].colours.set_in(program, unit);
-  }
+  /// In W/m².
+  const ColourQuads& irradiance() const { return irradiance_[0].colours; }
 
  private:
-  struct Quads {
-    ColourQuads colours;
-    gl::Framebuffer framebuffer;
-    explicit Quads(const gl::Texture& stencil);
-  };
-
   void add(const LightRound& round, bool is_first, const GBuffer& picture, const View& view);
 
   float plane_distance_;
   gl::Program cover_amid_, fill_smooth_;
   std::vector<gl::Program> add_, add_amid_;  // by formula
+  QuadLayout layout_;
   gl::Texture stencil_;
-  std::array<Quads, 2> irradiance_;  // what there is, and that with lights more
+  std::array<QuadTarget, 2> irradiance_;  // what there is, and that with lights more
   gl::VertexArray no_vertices_;
 };
 

@@ -56,15 +56,6 @@ LightPoint point_of(const VirtualLights& lights, std::size_t i, float scale) {
   return groups.front().points.front();
 }
 
-/// A picture that one draws into.
-struct Target {
-  gl::Texture texture;
-  gl::Framebuffer framebuffer;
-
-  Target(gl::Format format, int width, int height)
-      : texture(format, width, height), framebuffer({&texture}) {}
-};
-
 }  // namespace
 
 struct Rasteriser::State {
@@ -80,7 +71,7 @@ struct Rasteriser::State {
   std::optional<Lighting> lighting;  // or, where pixels have lights of their own,
   std::optional<Interleaving> interleaving;
   gl::Program resolve;
-  Target radiance;
+  QuadTarget radiance;
   gl::VertexArray no_vertices;
 
   State(const Scene& scene, const World& all, const gl::Info& gl, const RasterOptions& with)
@@ -94,7 +85,7 @@ struct Rasteriser::State {
         surfaces(scene, all, files),
         solid(solid_part(scene, all)),
         resolve(tile_program(files, "shaders/resolve.frag.glsl", with.tile)),
-        radiance(gl::Format::kRgba32f, with.width, with.height) {
+        radiance(quads().size()) {
     const bool by_maps = with.shadows == ShadowMethod::kMaps;
     const bool none_solid = solid && solid->triangles.empty();
     if (!by_maps && !none_solid) {
@@ -137,6 +128,10 @@ struct Rasteriser::State {
     whole.step = 1;
     return make_view(camera, whole);
   }
+  QuadLayout quads() const { return {options.tile, options.width, options.height}; }
+  const ColourQuads& irradiance() const {
+    return interleaving ? interleaving->irradiance() : lighting->shading().irradiance().colours;
+  }
   const GBuffer& whole_g_buffer() const {
     return interleaving ? interleaving->g_buffer() : lighting->g_buffer();
   }
@@ -152,11 +147,7 @@ struct Rasteriser::State {
     times.begin(Stage::kResolve);
     resolve.set("u_reflectances", 0, whole_g_buffer().reflectances);
     resolve.set("u_emissions", 1, whole_g_buffer().emissions);
-    if (interleaving) {
-      interleaving->set_irradiance(resolve, 2);
-    } else {
-      lighting->shading().irradiance().set_in(resolve, 2);
-    }
+    irradiance().set_in(resolve, 2);
     radiance.framebuffer.bind();
     gl::draw_full_screen(no_vertices);
     times.end();
@@ -199,7 +190,7 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
       if (pixels_done) pixels_done(done - std::exchange(reported, done));
       return !stop.load();
     });
-    const std::vector<float> rgba = s.radiance.framebuffer.read<float>();
+    const std::vector<Rgb> radiance = s.radiance.read(s.quads());
     s.times.collect();
     if (volumes) {
       volumes->add(*s.volumes, point_of(lights, *options.show_volumes, s.world.coordinate_scale()),
@@ -207,7 +198,7 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
     }
     const float share = 1.0f / static_cast<float>(options.samples);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-      image.pixels[i] += share * Rgb(rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]);
+      image.pixels[i] += share * radiance[i];
     }
   }
   if (volumes) volumes->blend_over(image);

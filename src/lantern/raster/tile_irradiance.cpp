@@ -8,7 +8,7 @@
 namespace lantern {
 
 TileIrradiance::Quads::Quads(int width, int height)
-    : colours(width, height),
+    : colours({width, height}),
       changes(gl::Format::kRgba32f, width, height),
       framebuffer({&colours.red, &colours.green, &colours.blue, &changes}) {}
 
