@@ -213,14 +213,19 @@ void EdgeList::sort_by_part() {
     part_of_caster.insert(part_of_caster.end(), parts_[p].casters, p);
   }
   const auto part_of_edge = [&](std::uint32_t e) { return part_of_caster[first_place(e)]; };
+  const auto is_paired = [&](std::uint32_t e) {
+    const std::uint32_t first = edges_[e].first;
+    return end_of(e) - first == 2 && (faces_[first] ^ faces_[first + 1]) % 2 != 0;
+  };
   std::stable_sort(edge_order.begin(), edge_order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return part_of_edge(a) < part_of_edge(b);
+    return std::pair(part_of_edge(a), !is_paired(a)) < std::pair(part_of_edge(b), !is_paired(b));
   });
   std::vector<Edge> edges;
   std::vector<std::uint32_t> faces;
   for (const std::uint32_t e : edge_order) {
     Part& part = parts_[part_of_edge(e)];
     if (part.edges++ == 0) part.first_edge = static_cast<std::uint32_t>(edges.size());
+    if (is_paired(e)) ++part.paired_edges;
     edges.push_back({edges_[e].a, edges_[e].b, static_cast<std::uint32_t>(faces.size())});
     for (std::uint32_t f = edges_[e].first; f < end_of(e); ++f) {
       faces.push_back(2 * place[faces_[f] / 2] + faces_[f] % 2);
@@ -276,7 +281,18 @@ bool EdgeList::is_outside(const Part& part, const LightPoint& light, std::span<c
 
 void EdgeList::append_edges(const Part& part, std::span<const std::int8_t> light_side, bool halved,
                             std::vector<VolumeEdge>& edges) const {
-  for (std::size_t e = part.first_edge; e < part.first_edge + part.edges; ++e) {
+  if (part.edges == 0) return;
+  // Most edges run between two triangles: where both face the light alike there is nothing to do.
+  const std::uint32_t* faces = faces_.data() + edges_[part.first_edge].first;
+  for (std::size_t e = part.first_edge; e < part.first_edge + part.paired_edges; ++e, faces += 2) {
+    const int side = light_side[faces[0] / 2];
+    if (side == light_side[faces[1] / 2]) continue;
+    const bool forwards = (side > 0) == (faces[0] % 2 == 0);
+    const VolumeEdge edge =
+        forwards ? VolumeEdge{edges_[e].a, edges_[e].b} : VolumeEdge{edges_[e].b, edges_[e].a};
+    edges.insert(edges.end(), halved ? 1 : 2, edge);
+  }
+  for (std::size_t e = part.first_edge + part.paired_edges; e < part.first_edge + part.edges; ++e) {
     const std::uint32_t end =
         e + 1 < edges_.size() ? edges_[e + 1].first : static_cast<std::uint32_t>(faces_.size());
     int times = 0;

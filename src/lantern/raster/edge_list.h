@@ -78,6 +78,7 @@ class EdgeList {
     Vec3 centre;
     float radius;
     std::uint32_t first_edge = 0, edges = 0;
+    std::uint32_t paired_edges = 0;  // the first of these, between two triangles with one front
   };
   struct Edge {
     std::uint32_t a, b;   // a < b
