@@ -74,39 +74,38 @@ SeenSide outer_side(const World& world, std::span<const std::uint32_t> part) {
 
 }  // namespace
 
-std::vector<std::uint32_t> find_parts(std::span<const std::array<std::uint32_t, 3>> neighbours) {
+Parts find_parts(std::span<const std::array<std::uint32_t, 3>> neighbours) {
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> part_of(neighbours.size(), kNone), open;
-  std::uint32_t parts = 0;
+  Parts parts{std::vector<std::uint32_t>(neighbours.size(), kNone), {}};
+  std::vector<std::uint32_t> open;
+  const auto take = [&](std::uint32_t triangle) {
+    parts.of_triangle[triangle] = static_cast<std::uint32_t>(parts.sizes.size() - 1);
+    ++parts.sizes.back();
+    open.push_back(triangle);
+  };
   for (std::uint32_t seed = 0; seed < neighbours.size(); ++seed) {
-    if (part_of[seed] != kNone) continue;
-    part_of[seed] = parts;
-    for (open.push_back(seed); !open.empty();) {
-      const std::uint32_t t = open.back();
+    if (parts.of_triangle[seed] != kNone) continue;
+    parts.sizes.push_back(0);
+    take(seed);
+    while (!open.empty()) {
+      const std::uint32_t triangle = open.back();
       open.pop_back();
-      for (const std::uint32_t next : neighbours[t]) {
-        if (next == kNoTriangle || part_of[next] != kNone) continue;
-        part_of[next] = parts;
-        open.push_back(next);
+      for (const std::uint32_t next : neighbours[triangle]) {
+        if (next != kNoTriangle && parts.of_triangle[next] == kNone) take(next);
       }
     }
-    ++parts;
   }
-  return part_of;
+  return parts;
 }
 
 std::vector<Body> make_bodies(const World& world,
                               std::span<const std::array<std::uint32_t, 3>> neighbours,
-                              std::span<const std::uint32_t> part_of,
-                              std::span<std::uint32_t> triangles, std::uint32_t before) {
-  std::vector<std::uint32_t> sizes;
-  for (const std::uint32_t part : part_of) {
-    if (part >= sizes.size()) sizes.resize(part + 1, 0);
-    ++sizes[part];
-  }
+                              const Parts& parts, std::span<std::uint32_t> triangles,
+                              std::uint32_t before) {
   constexpr std::uint32_t kTogether = std::numeric_limits<std::uint32_t>::max();
   const auto key = [&](std::uint32_t t) {
-    return sizes[part_of[t]] < kFewest ? kTogether : part_of[t];
+    const std::uint32_t part = parts.of_triangle[t];
+    return parts.sizes[part] < kFewest ? kTogether : part;
   };
   std::stable_sort(triangles.begin(), triangles.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
@@ -120,7 +119,8 @@ std::vector<Body> make_bodies(const World& world,
       }
     }
     const auto run = triangles.subspan(first, end - first);
-    const bool is_whole = key(run[0]) != kTogether && run.size() == sizes[part_of[run[0]]];
+    const std::uint32_t part = key(run[0]);
+    const bool is_whole = part != kTogether && run.size() == parts.sizes[part];
     bodies.push_back(
         {before + static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(run.size()),
          box.centre(), box.radius(),

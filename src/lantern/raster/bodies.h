@@ -23,16 +23,21 @@ struct Body {
   SeenSide outside = SeenSide::kBoth;
 };
 
-/// Of each triangle the number of the part that it is connected with by edges; `neighbours` of
-/// find_neighbours().
-std::vector<std::uint32_t> find_parts(std::span<const std::array<std::uint32_t, 3>> neighbours);
+/// What is connected by edges.
+struct Parts {
+  std::vector<std::uint32_t> of_triangle;  // the number of the part that it is in
+  std::vector<std::uint32_t> sizes;        // in triangles
+};
+
+/// `neighbours` of find_neighbours().
+Parts find_parts(std::span<const std::array<std::uint32_t, 3>> neighbours);
 
 /// Brings the triangles into an order in which those of a part follow each other, and cuts that
 /// into bodies; small parts are one together. `before` others come first in a longer order.
 std::vector<Body> make_bodies(const World& world,
                               std::span<const std::array<std::uint32_t, 3>> neighbours,
-                              std::span<const std::uint32_t> part_of,
-                              std::span<std::uint32_t> triangles, std::uint32_t before = 0);
+                              const Parts& parts, std::span<std::uint32_t> triangles,
+                              std::uint32_t before = 0);
 
 /// Whether some of the body may lie on the positive side of all planes, whose normals have
 /// length 1.

@@ -72,13 +72,13 @@ std::vector<std::uint32_t> Surfaces::make_batches(const World& world) {
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return batch_of(a) < batch_of(b); });
   const auto neighbours = find_neighbours(scene_, world);
-  const std::vector<std::uint32_t> part_of = find_parts(neighbours);
+  const Parts parts = find_parts(neighbours);
   for (std::size_t first = 0; first < order.size();) {
     std::size_t end = first;
     while (end < order.size() && batch_of(order[end]) == batch_of(order[first])) ++end;
     batches_.push_back(
         {index(world.materials[order[first]]),
-         make_bodies(world, neighbours, part_of, std::span(order).subspan(first, end - first),
+         make_bodies(world, neighbours, parts, std::span(order).subspan(first, end - first),
                      static_cast<std::uint32_t>(first))});
     first = end;
   }
