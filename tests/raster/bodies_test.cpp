@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
+// Bodies: what known shapes are cut into, and which of them show one side alone.
 #include "lantern/raster/bodies.h"
 
 #include "lantern/raster/neighbours.h"
 
 #include "tests/raster/raster_scenes.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -17,6 +17,7 @@
 #include <cmath>
 #include <epoxy/gl.h>
 #include <optional>
+#include <utility>
 
 namespace lantern {
 namespace {
@@ -104,6 +105,16 @@ TEST(Pictures, TwoRooms) { expect_same(test::own_scene("two_rooms.scene"), small
 TEST(Pictures, ManyEmitters) { expect_same(test::own_scene("many_emitters.scene"), small(64)); }
 
 TEST(Pictures, Balls) { expect_same(test::room_of_balls(12, 12), small(24)); }
+
+/// Their backs are outside; and neither side of the picture is one of whole quads.
+TEST(Pictures, BallsTurnedInsideOut) {
+  Scene scene = test::room_of_balls(12, 12);
+  for (uvec3& triangle : scene.meshes[2].triangles) std::swap(triangle.y, triangle.z);
+  RenderOptions options = small(24);
+  options.width = 93;
+  options.height = 95;
+  expect_same(scene, options);
+}
 
 TEST(Pictures, SibenikUnderSunAndSky) {
   const auto folder = test::shared_folder("scenes/ogre");

@@ -4,8 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <string>
 
 namespace lantern {
+
+gl::Program tile_program(const gl::ShaderFiles& files, const char* fragment, int tile,
+                         const std::vector<gl::Definition>& more) {
+  std::vector<gl::Definition> definitions = {{"TILE", std::to_string(tile)}};
+  definitions.insert(definitions.end(), more.begin(), more.end());
+  return gl::Program(files, "shaders/full_screen.vert.glsl", fragment, definitions);
+}
 
 QuadTarget::QuadTarget(const glm::ivec2& size, const gl::Texture* depth)
     : colours(size), framebuffer({&colours.red, &colours.green, &colours.blue}, depth) {}

@@ -12,6 +12,10 @@
 
 namespace lantern {
 
+/// Covers the framebuffer; its fragments are pixels, tiles of `tile` x `tile` or quads of either.
+gl::Program tile_program(const gl::ShaderFiles& files, const char* fragment, int tile,
+                         const std::vector<gl::Definition>& more = {});
+
 /// Which quads the pixels of a picture are in, in tiles of `tile` x `tile`.
 struct QuadLayout {
   int tile, width, height;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/raster/light_round.h"
 
+#include "lantern/raster/colour_quads.h"
 #include "lantern/raster/light_shares.h"
 
 #include <cstddef>
@@ -12,13 +13,6 @@ namespace {
 constexpr GLuint kLightsBinding = 0;
 
 }  // namespace
-
-gl::Program tile_program(const gl::ShaderFiles& files, const char* fragment, int tile,
-                         const std::vector<gl::Definition>& more) {
-  std::vector<gl::Definition> definitions = {{"TILE", std::to_string(tile)}};
-  definitions.insert(definitions.end(), more.begin(), more.end());
-  return gl::Program(files, "shaders/full_screen.vert.glsl", fragment, definitions);
-}
 
 LightRound::LightRound(const gl::Texture& depth, int shares)
     : masks(depth),

@@ -13,10 +13,6 @@
 
 namespace lantern {
 
-/// Covers the framebuffer; knows of tiles of `tile` x `tile` pixels.
-gl::Program tile_program(const gl::ShaderFiles& files, const char* fragment, int tile,
-                         const std::vector<gl::Definition>& more = {});
-
 struct LightRound {
   MaskPicture masks;  // of the pictures of all shares
   gl::Texture lights_of;

@@ -11,8 +11,8 @@ namespace {
 
 gl::Program shade_program(const gl::ShaderFiles& files, LightFormula formula,
                           GLuint lights_binding) {
-  gl::Program program(files, "shaders/full_screen.vert.glsl", "shaders/shade_masked.frag.glsl",
-                      {{"KIND", std::to_string(static_cast<int>(formula))}, {"TILE", "1"}});
+  gl::Program program = tile_program(files, "shaders/shade_masked.frag.glsl", 1,
+                                     {{"KIND", std::to_string(static_cast<int>(formula))}});
   program.set_block("Lights", lights_binding);
   return program;
 }

@@ -4,7 +4,6 @@
 #include "lantern/gl/check.h"
 #include "lantern/raster/draw_state.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace lantern {
