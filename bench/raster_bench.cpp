@@ -55,8 +55,8 @@ void main() {
   uvec4 bits = texelFetch(u_points, at, 0);
   Point p;
   p.position = uintBitsToFloat(bits.xyz);
-  p.shading = unpack_unit(bits.w);
-  p.geometric = unpack_unit(texelFetch(u_reflectances, at, 0).w);
+  p.shading = unpack_unit(texelFetch(u_reflectances, at, 0).w);
+  p.geometric = unpack_unit(bits.w);
   o_irradiance = vec4(irradiance_from(u_lights[u_light], p), 1.0);
 }
 )";

@@ -15,8 +15,8 @@ uniform float u_plane_distance;            // as far off is another surface
 
 Point point_at(ivec2 at) {
   uvec4 bits = texelFetch(u_points, at, 0);
-  return Point(uintBitsToFloat(bits.xyz), unpack_unit(bits.w),
-               unpack_unit(texelFetch(u_reflectances, at, 0).w));
+  return Point(uintBitsToFloat(bits.xyz), unpack_unit(texelFetch(u_reflectances, at, 0).w),
+               unpack_unit(bits.w));
 }
 
 /// The pixels that are shaded.
@@ -51,11 +51,11 @@ struct Witness {
 
 /// How strange a point is to p: 0 on its surface, else how little it is like one that is; and what
 /// it counts, 1 / distance².
-vec2 strange_and_weight(Point p, Point other) {
+vec2 strange_and_weight(Point p, vec3 other, vec3 normal) {
   // Beyond 30 degrees it is another side of things.
   const float kOtherSide = 0.866;
-  vec3 way = other.position - p.position;
-  float alike = dot(p.shading, other.shading);
+  vec3 way = other - p.position;
+  float alike = dot(p.geometric, normal);
   float off = abs(dot(p.geometric, way)) / u_plane_distance;
   float nearest = 1e-4 * u_plane_distance;
   return vec2(alike > kOtherSide && off < 1.0 ? 0.0 : 1.0 - alike + 0.01 * off,
@@ -64,13 +64,16 @@ vec2 strange_and_weight(Point p, Point other) {
 
 Witness witness(ivec2 at, Pixels pixels) {
   ivec2 inside = clamp(at, ivec2(0), textureSize(u_points, 0) - 1);
-  Point point = point_at(inside);
-  vec2 to0 = strange_and_weight(pixels.p0, point), to1 = strange_and_weight(pixels.p1, point);
-  vec2 to2 = strange_and_weight(pixels.p2, point), to3 = strange_and_weight(pixels.p3, point);
-  bool is_none = inside != at || texelFetch(u_points, inside, 0) == uvec4(0u);  // or the sky
+  uvec4 bits = texelFetch(u_points, inside, 0);
+  vec3 point = uintBitsToFloat(bits.xyz), normal = unpack_unit(bits.w);
+  vec2 to0 = strange_and_weight(pixels.p0, point, normal);
+  vec2 to1 = strange_and_weight(pixels.p1, point, normal);
+  vec2 to2 = strange_and_weight(pixels.p2, point, normal);
+  vec2 to3 = strange_and_weight(pixels.p3, point, normal);
+  bool is_none = inside != at || bits == uvec4(0u);  // or the sky
   Witness w;
-  w.normal = is_none ? vec3(0.0) : point.geometric;
-  w.height = dot(w.normal, point.position);
+  w.normal = is_none ? vec3(0.0) : normal;
+  w.height = dot(w.normal, point);
   w.seen = mask_at(place_among_shares(inside, textureSize(u_masks, 0)));
   w.strange = is_none ? vec4(1e30) : vec4(to0.x, to1.x, to2.x, to3.x);
   w.weight = is_none ? vec4(0.0) : vec4(to0.y, to1.y, to2.y, to3.y);
@@ -98,7 +101,7 @@ void main() {
              point_at(min(at + ivec2(2, 0), last)), point_at(min(at + ivec2(3, 0), last)));
   vec3 sum0 = vec3(0.0), sum1 = vec3(0.0), sum2 = vec3(0.0), sum3 = vec3(0.0);
 #if !AMID_PLANE
-  vec4 all_of_it = vec4(0.0), untold = vec4(0.0);  // of what lights give, were nothing between
+  vec4 told = vec4(0.0), told_seen = vec4(0.0), untold = vec4(0.0);
 #endif
   for (int share = 0; share < TILE * TILE; ++share) {
     uvec2 lights = texelFetch(u_lights_of, ivec2(share, 0), 0).rg;
@@ -125,11 +128,14 @@ void main() {
 #endif
     uvec4 seen_by = uvec4(a.seen, b.seen, c.seen, d.seen);
 #if AMID_PLANE
-    for (uint left = seen_by_any(seen_by, count); left != 0u; left ^= lowest(left)) {
-      int i = number_of(lowest(left));
+    uint left = seen_by_any(seen_by, count);
 #else
-    for (int i = 0; i < count; ++i) {
+    // From another surface one may not know of a light whether it is seen.
+    bool are_strangers = any(greaterThan(least, vec4(0.0)));
+    uint left = are_strangers ? lowest_bits(count) : seen_by_any(seen_by, count);
 #endif
+    for (; left != 0u; left ^= lowest(left)) {
+      int i = number_of(lowest(left));
       Light light = u_lights[first + i];
 #if AMID_PLANE
       vec4 see = vec4(bit(seen_by, i));
@@ -153,15 +159,20 @@ void main() {
       sum2 += seen.z * e2;
       sum3 += seen.w * e3;
 #if !AMID_PLANE
-      vec4 gives = vec4(brightness(e0), brightness(e1), brightness(e2), brightness(e3));
-      all_of_it += gives;
-      untold += any(faces_it) ? vec4(0.0) : gives;
+      if (are_strangers) {
+        vec4 gives = vec4(brightness(e0), brightness(e1), brightness(e2), brightness(e3));
+        bool is_told = any(faces_it);
+        told += is_told ? gives : vec4(0.0);
+        told_seen += is_told ? seen * gives : vec4(0.0);
+        untold += is_told ? vec4(0.0) : gives;
+      }
 #endif
     }
   }
 #if !AMID_PLANE
   // Of lights that nobody could see as much is seen as of the others.
-  vec4 more = all_of_it / max(all_of_it - untold, 1e-30 + 1e-6 * all_of_it);
+  vec4 sum = vec4(brightness(sum0), brightness(sum1), brightness(sum2), brightness(sum3));
+  vec4 more = 1.0 + untold * told_seen / max(told * sum, 1e-30);
   sum0 *= more.x;
   sum1 *= more.y;
   sum2 *= more.z;

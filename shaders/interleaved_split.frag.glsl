@@ -16,7 +16,8 @@ layout(location = 2) out vec4 o_emission;
 #endif
 
 void main() {
-  ivec2 place = ivec2(gl_FragCoord.xy), share = place / u_share_size;
+  // In floats: Mesa divides integers one by one.
+  ivec2 place = ivec2(gl_FragCoord.xy), share = ivec2(gl_FragCoord.xy / vec2(u_share_size));
   ivec2 at = share + TILE * (place - share * u_share_size);
   at = min(at, textureSize(u_depth, 0) - 1);
 #if POINTS

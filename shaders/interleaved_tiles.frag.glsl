@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Of each tile the mean of its points and their normal, as in the G-buffer, if all of it is in one
-// plane.
+// Of each tile the mean of its points and their shading normal, packed, if all of it is in one plane
+// and shaded as one.
 #include "shaders/interleaved_planes.glsl"
 
 uniform highp usampler2D u_points;
+uniform highp usampler2D u_reflectances;
 
 layout(location = 0) out uvec4 o_tile;
+
+uint shading_at(ivec2 at) { return texelFetch(u_reflectances, at, 0).w; }
 
 void main() {
   ivec2 first = TILE * ivec2(gl_FragCoord.xy);
@@ -19,6 +22,12 @@ void main() {
       sum += uintBitsToFloat(point.xyz);
     }
   }
+  // Within a plane shading changes steadily: its corners tell.
+  uint shading = shading_at(first);
+  for (int corner = 1; corner < 4; ++corner) {
+    ivec2 at = first + (TILE - 1) * ivec2(corner % 2, corner / 2);
+    is_flat = are_parallel(unpack_unit(shading), unpack_unit(shading_at(at))) && is_flat;
+  }
   vec3 middle = sum / float(TILE * TILE);
-  o_tile = uvec4(floatBitsToUint(middle), is_flat ? plane.w : kNotFlat);
+  o_tile = uvec4(floatBitsToUint(middle), is_flat ? shading : kNotFlat);
 }

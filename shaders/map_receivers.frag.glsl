@@ -6,21 +6,19 @@
 #include "shaders/triangles.glsl"
 
 uniform sampler2D u_emissions;
-uniform highp usampler2D u_reflectances;
 uniform highp usampler2D u_patches;  // see ConvexPatches; a texel for each triangle of the world
 
-layout(location = 0) out uvec4 o_receiver;
+layout(location = 0) out uvec2 o_receiver;
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   float own = texelFetch(u_emissions, at, 0).a;
-  o_receiver = uvec4(0u);
+  o_receiver = uvec2(0u);
   if (own == 0.0) return;
   // Number of the triangle, first of its patch, how many, 1: the front is outside, 2: the back.
   uvec4 patch_of = texelFetch(
       u_patches, texel_number(int(abs(own)) - 1, textureSize(u_patches, 0).x), 0);
   bool is_outside = (patch_of.w & (own > 0.0 ? 1u : 2u)) != 0u;
-  uint geometric = texelFetch(u_reflectances, at, 0).w;
-  o_receiver = is_outside ? uvec4(patch_of.y + 1u, patch_of.z | kHasPatch, geometric, 0u)
-                          : uvec4(patch_of.x + 1u, 1u, geometric, 0u);
+  o_receiver = is_outside ? uvec2(patch_of.y + 1u, patch_of.z | kHasPatch)
+                          : uvec2(patch_of.x + 1u, 1u);
 }

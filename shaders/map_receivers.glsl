@@ -3,8 +3,7 @@
 #include "shaders/octahedral.glsl"
 
 uniform highp usampler2D u_points;
-// The first triangle that is not in the way and 1, or 0 where nothing is seen; how many, kHasPatch;
-// geometric normal.
+// The first triangle that is not in the way and 1, or 0 where nothing is seen; how many, kHasPatch.
 uniform highp usampler2D u_receivers;
 
 const uint kHasPatch = 0x80000000u;  // they are all of a patch
@@ -16,10 +15,11 @@ struct Receiver {
 };
 
 Receiver receiver_at(ivec2 pixel) {
-  uvec4 bits = texelFetch(u_receivers, pixel, 0);
+  uvec4 point = texelFetch(u_points, pixel, 0);
+  uvec2 bits = texelFetch(u_receivers, pixel, 0).rg;
   Receiver p;
-  p.position = uintBitsToFloat(texelFetch(u_points, pixel, 0).xyz);
-  p.geometric = unpack_unit(bits.z);
+  p.position = uintBitsToFloat(point.xyz);
+  p.geometric = unpack_unit(point.w);
   p.first = bits.x;
   p.count = bits.y & ~kHasPatch;
   p.its_patch = (bits.y & kHasPatch) != 0u ? bits.x : 0u;

@@ -17,8 +17,8 @@ ivec2 inside(ivec2 at) { return min(at, textureSize(u_mask, 0) - 1); }
 
 Point point_at(ivec2 at) {
   uvec4 bits = texelFetch(u_points, inside(at), 0);
-  return Point(uintBitsToFloat(bits.xyz), unpack_unit(bits.w),
-               unpack_unit(texelFetch(u_reflectances, inside(at), 0).w));
+  return Point(uintBitsToFloat(bits.xyz), unpack_unit(texelFetch(u_reflectances, inside(at), 0).w),
+               unpack_unit(bits.w));
 }
 
 uint mask_at(ivec2 at) {

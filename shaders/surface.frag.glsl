@@ -31,8 +31,8 @@ uniform vec4 u_reflectance_look_up;
 uniform vec4 u_emission_look_up;
 #endif
 
-layout(location = 0) out uvec4 o_point;       // position's bits, shading normal
-layout(location = 1) out uvec4 o_reflectance; // its bits, geometric normal
+layout(location = 0) out uvec4 o_point;       // position's bits, geometric normal
+layout(location = 1) out uvec4 o_reflectance; // its bits, shading normal
 layout(location = 2) out vec4 o_emission;     // radiance; number of the triangle and 1, negative if
                                               // its back is seen
 
@@ -69,8 +69,8 @@ void main() {
   reflectance = clamp(reflectance, 0.0, 1.0);
 
   vec3 lifted = v_position + geometric * (side * u_lift);
-  o_point = uvec4(floatBitsToUint(lifted), pack_unit(shading * side));
-  o_reflectance = uvec4(floatBitsToUint(reflectance), pack_unit(geometric * side));
+  o_point = uvec4(floatBitsToUint(lifted), pack_unit(geometric * side));
+  o_reflectance = uvec4(floatBitsToUint(reflectance), pack_unit(shading * side));
   // Floats count no further; half a number is no triangle's.
   const uint kCounted = 0xffffffu;
   o_emission = vec4(emission, side * (v_triangle < kCounted ? float(v_triangle + 1u) : 0.5));

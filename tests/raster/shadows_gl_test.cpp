@@ -79,7 +79,6 @@ struct Both {
     surfaces.draw(view, g_buffer);
     g_buffer.framebuffer.bind();
     const auto points = g_buffer.framebuffer.read<std::uint32_t>(0);
-    const auto reflectances = g_buffer.framebuffer.read<std::uint32_t>(1);
     const auto emissions = g_buffer.framebuffer.read<float>(2);
     Difference difference;
     for (const LightGroup& group : group_lights(lights, {}, stage.world.coordinate_scale())) {
@@ -92,7 +91,7 @@ struct Both {
           return std::bit_cast<float>(points[4 * pixel + i]);
         };
         const Vec3 position(word(0), word(1), word(2));
-        const Vec3 normal = unpack(reflectances[4 * pixel + 3]);
+        const Vec3 normal = unpack(points[4 * pixel + 3]);
         for (std::size_t light = 0; light < group.points.size(); ++light) {
           compare_one(group, light, position, normal,
                       (masks[4 * pixel + light / 8] >> (light % 8) & 1) != 0, difference);

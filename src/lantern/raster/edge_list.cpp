@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/raster/edge_list.h"
 
+#include "lantern/raster/silhouettes.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -37,6 +39,15 @@ Vec4 supporting_plane(const World& world, std::uint32_t triangle, float rounding
     if (!before && !behind) return Vec4(std::nanf(""));
   }
   return before ? plane : -plane;
+}
+
+/// Volumes of these triangles around the eye that `line` leads to, less those they are turned from.
+int count_of(std::span<const uvec3> triangles, const EyeLine& line) {
+  int count = 0;
+  for (const uvec3& triangle : triangles) {
+    if (line.is_parted_by(triangle)) count += line.crossing(triangle);
+  }
+  return count;
 }
 
 class Sets {
@@ -248,28 +259,6 @@ std::vector<std::int8_t> EdgeList::facing(const LightPoint& light) const {
   return signs;
 }
 
-/// Which side of the line from eye to light the edge passes on; the same, turned round, for the
-/// triangle on its other side, so that a line through an edge crosses one of the two.
-int EdgeList::side_of_edge(std::uint32_t from, std::uint32_t to, const LightPoint& light,
-                           const Vec3& eye) const {
-  const dvec3 e(eye);
-  const dvec3 a = dvec3(vertices_[std::min(from, to)]) - e;
-  const dvec3 b = dvec3(vertices_[std::max(from, to)]) - e;
-  const dvec3 towards_light = dvec3(light) - static_cast<double>(light.w) * e;
-  const int side = glm::dot(glm::cross(a, b), towards_light) >= 0.0 ? 1 : -1;
-  return from < to ? side : -side;
-}
-
-/// 1: the way from the light to the eye goes through the triangle from its front to its back; -1
-/// the other way; 0: not at all. Light and eye must be on either side of its plane.
-int EdgeList::signed_crossing(std::uint32_t caster, const LightPoint& light,
-                              const Vec3& eye) const {
-  const uvec3 t = casters_[caster];
-  const int side = side_of_edge(t.x, t.y, light, eye);
-  if (side_of_edge(t.y, t.z, light, eye) != side) return 0;
-  return side_of_edge(t.z, t.x, light, eye) == side ? side : 0;
-}
-
 bool EdgeList::is_outside(const Part& part, const LightPoint& light, std::span<const Vec4> region) {
   // The shadow widens on its way.
   const Vec3 way = light.w * part.centre - Vec3(light);
@@ -306,40 +295,46 @@ void EdgeList::append_edges(const Part& part, std::span<const std::int8_t> light
   }
 }
 
-/// Of the part's volumes around the eye.
+/// Of the part's volumes around the eye; `line` leads to it.
 int EdgeList::count_at_eye(const Part& part, std::span<const std::int8_t> light_side,
-                           const LightPoint& light, const Vec3& eye) const {
-  const Vec3 towards_light = Vec3(light) - light.w * eye;
-  const Vec3 off_line = glm::cross(part.centre - eye, towards_light);
-  constexpr float kSlack = 1.001f;  // rounding of this test, not of the next
-  const float reach = kSlack * part.radius * part.radius;
-  if (glm::dot(off_line, off_line) > reach * glm::dot(towards_light, towards_light)) return 0;
+                           const EyeLine& line, const Vec3& eye) const {
   int count = 0;
   for (std::uint32_t t = part.first_caster; t < part.first_caster + part.casters; ++t) {
     const double eye_side =
         glm::dot(dvec3(planes_[t]), dvec3(eye) - dvec3(vertices_[casters_[t].x]));
     if ((eye_side >= 0.0) == (light_side[t] > 0)) continue;
-    count += light_side[t] * signed_crossing(t, light, eye);
+    count += light_side[t] * line.crossing(casters_[t]);
   }
   return count;
 }
 
 ShadowVolumes EdgeList::volumes(const LightPoint& light, const Vec3& eye, VolumeCount count,
-                                std::span<const Vec4> region) const {
+                                std::span<const Vec4> region, float slack) const {
+  constexpr float kSlackOfRadius = 0.01f;
   std::vector<std::int8_t> light_side(planes_.size());
+  const EyeLine line(vertices_, light, eye);
+  std::optional<SilhouetteSimplifier> simplifier;
+  if (slack > 0.0f) simplifier.emplace(vertices_, light, eye);
   ShadowVolumes result;
   for (const Part& part : parts_) {
     if (is_outside(part, light, region)) continue;
     for (std::uint32_t t = part.first_caster; t < part.first_caster + part.casters; ++t) {
       light_side[t] = facing(t, light);
     }
+    const bool may_shadow_eye = line.meets(part.centre, part.radius);
     const bool halved = part.even && count == VolumeCount::kHalved;
+    const std::size_t first = result.edges.size();
     append_edges(part, light_side, halved, result.edges);
-    int of_eye = count_at_eye(part, light_side, light, eye);
+    int of_eye = may_shadow_eye ? count_at_eye(part, light_side, line, eye) : 0;
     if (halved) {
       // An odd count of triangles at the eye is an odd one, so never none, wherever it looks.
       result.dark |= of_eye % 2 != 0;
       of_eye /= 2;
+      if (simplifier) {
+        const SilhouetteTolerance tolerance{slack, kSlackOfRadius * part.radius};
+        const auto left_out = simplifier->simplify(result.edges, first, tolerance);
+        if (may_shadow_eye) of_eye -= count_of(left_out, line);
+      }
     }
     result.eye_count += of_eye;
   }

@@ -5,6 +5,8 @@
 // light. [Crow 1977; open and non-manifold meshes: Bergeron 1986; Aldridge & Woods 2004]
 #pragma once
 
+#include "lantern/raster/eye_line.h"
+#include "lantern/raster/volume_edge.h"
 #include "lantern/scene/world.h"
 
 #include <cstddef>
@@ -14,9 +16,6 @@
 #include <vector>
 
 namespace lantern {
-
-/// A light as the volumes see it: w = 1 and its position, or w = 0 and the direction towards it.
-using LightPoint = Vec4;
 
 /// Planes that all of the scene lies in front of and that some of its triangles lie in, largest
 /// first: (unit normal, offset) with dot(normal, p) + offset >= 0 on the inside, but for a rounding
@@ -29,13 +28,6 @@ bool is_inside(std::span<const Vec4> walls, const LightPoint& point);
 /// The first wall that the triangle lies in.
 std::optional<std::size_t> wall_of(const World& world, std::uint32_t triangle,
                                    std::span<const Vec4> walls);
-
-/// Of two welded vertices. Seen from the outside of the volume the quad is to, from, from extruded,
-/// to extruded, counter-clockwise.
-struct VolumeEdge {
-  std::uint32_t from, to;
-  bool operator==(const VolumeEdge&) const = default;
-};
 
 struct ShadowVolumes {
   std::vector<VolumeEdge> edges;  // an edge that is extruded n times stands here n times
@@ -65,10 +57,11 @@ class EdgeList {
   std::vector<std::int8_t> facing(const LightPoint& light) const;
 
   /// Of points outside one of the planes, whose normals look inwards and have length 1, nothing is
-  /// asked: parts whose shadows lie wholly there are left out.
+  /// asked: parts whose shadows lie wholly there are left out. What is halved may be off by the
+  /// angle `slack`, seen from light or eye, and a hundredth of its size, for fewer edges.
   ShadowVolumes volumes(const LightPoint& light, const Vec3& eye,
-                        VolumeCount count = VolumeCount::kHalved,
-                        std::span<const Vec4> region = {}) const;
+                        VolumeCount count = VolumeCount::kHalved, std::span<const Vec4> region = {},
+                        float slack = 0.0f) const;
 
  private:
   /// A part of the casters that shares no extruded edge with the rest.
@@ -93,10 +86,7 @@ class EdgeList {
   std::int8_t facing(std::uint32_t caster, const LightPoint& light) const;
   void append_edges(const Part& part, std::span<const std::int8_t> light_side, bool halved,
                     std::vector<VolumeEdge>& edges) const;
-  int count_at_eye(const Part& part, std::span<const std::int8_t> light_side,
-                   const LightPoint& light, const Vec3& eye) const;
-  int signed_crossing(std::uint32_t caster, const LightPoint& light, const Vec3& eye) const;
-  int side_of_edge(std::uint32_t from, std::uint32_t to, const LightPoint& light,
+  int count_at_eye(const Part& part, std::span<const std::int8_t> light_side, const EyeLine& line,
                    const Vec3& eye) const;
 
   std::vector<Vec3> vertices_;

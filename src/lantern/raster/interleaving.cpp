@@ -14,6 +14,9 @@ int round_up(int n, int step) { return (n + step - 1) / step * step; }
 /// A tile sees about a hundredth of the scene; further off its plane is another surface.
 float plane_distance(const ViewOptions& options) { return 1e-2f * options.radius; }
 
+/// Where a shadow ends each share knows to one of its pixels.
+constexpr float kSlack = 0.25f;
+
 bool asks_more_than_depth(const Shadows& shadows) {
   return !shadows.maps.empty() || (shadows.volumes && shadows.volumes->needs_depth_of_view());
 }
@@ -83,7 +86,9 @@ void Interleaving::look(LightRound& round, std::span<const View> of_shares,
                         std::span<const LightGroup> groups) {
   round.hold(groups);
   std::vector<GroupInView> in_view;
-  for (const LightGroup& group : groups) in_view.push_back({of_shares[group.share], group});
+  for (const LightGroup& group : groups) {
+    in_view.push_back({of_shares[group.share], group, kSlack});
+  }
   const gl::Texture& seen = masks_.draw(in_view, round.masks);
   if (&seen == &round.masks.mask) return;
   const gl::Framebuffer masks({&seen});

@@ -18,7 +18,7 @@ const gl::Texture& LightMasks::draw(std::span<const GroupInView> views, const Ma
   if (shadows_.volumes) {
     std::vector<LightsInView> lights;
     for (const GroupInView& of_view : views) {
-      lights.push_back({of_view.view, of_view.group.points, of_view.group.fronts});
+      lights.push_back({of_view.view, of_view.group.points, of_view.group.fronts, of_view.slack});
     }
     shadows_.volumes->draw(lights, to.framebuffer, times_);
   } else {

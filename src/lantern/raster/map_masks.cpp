@@ -54,7 +54,7 @@ MapMasks::MapMasks(ShadowMaps& maps, const gl::ShaderFiles& files, int width, in
                 Programs(files, LightFormula::kDirectional)},
       groups_(tiles(width, kGroup), tiles(height, kGroup)),
       tiles_(tiles(width, kTile), tiles(height, kTile)),
-      receivers_(gl::Format::kRgba32ui, width, height),
+      receivers_(gl::Format::kRg32ui, width, height),
       mask_(gl::Format::kRgba8, width, height),
       is_open_(gl::Format::kDepth32f, width, height),
       receiver_framebuffer_({&receivers_}),
@@ -62,8 +62,7 @@ MapMasks::MapMasks(ShadowMaps& maps, const gl::ShaderFiles& files, int width, in
 
 void MapMasks::look_at(const GBuffer& g_buffer) {
   of_pixels_.set("u_emissions", 0, g_buffer.emissions);
-  of_pixels_.set("u_reflectances", 1, g_buffer.reflectances);
-  of_pixels_.set("u_patches", 2, maps_.triangles().owners);
+  of_pixels_.set("u_patches", 1, maps_.triangles().owners);
   receiver_framebuffer_.bind();
   gl::draw_full_screen(no_vertices_);
   of_tiles_.set("u_points", 0, g_buffer.points);

@@ -155,7 +155,9 @@ void StencilShadows::find_volumes(Prepared& prepared) const {
   const VolumeCount count =
       method_ == VolumeMethod::kZFail ? VolumeCount::kPlain : VolumeCount::kHalved;
   std::vector<Vec4> region;
+  float slack = 0.0f;
   if (method_ == VolumeMethod::kExact) {
+    slack = prepared.slack * glm::length(prepared.view->step_x);
     region = sides_of(*prepared.view);
     if (prepared.front) region.push_back(*prepared.front);
   }
@@ -165,7 +167,7 @@ void StencilShadows::find_volumes(Prepared& prepared) const {
     // From behind one meets also what is outside the walls; the classics know no walls.
     const bool inside = method_ == VolumeMethod::kExact && is_inside(walls_, prepared.light);
     prepared.list = inside ? &*inside_ : &whole_;
-    prepared.volumes = prepared.list->volumes(prepared.light, eye, count, region);
+    prepared.volumes = prepared.list->volumes(prepared.light, eye, count, region, slack);
     if (is_clear_of(*prepared.list, prepared.volumes, prepared.light, eye, clear)) break;
   }
   if (method_ == VolumeMethod::kZPass) {
@@ -220,6 +222,7 @@ std::vector<StencilShadows::Prepared> StencilShadows::prepare(std::span<const Li
       if (!of_view.fronts.empty()) p.front = of_view.fronts[number];
       p.number = number;
       p.view = &of_view.view;
+      p.slack = of_view.slack;
     }
   }
   parallel_for(prepared.size(), 1, [&](std::size_t i) { find_volumes(prepared[i]); });

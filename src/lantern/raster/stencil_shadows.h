@@ -23,6 +23,7 @@ struct LightsInView {
   std::span<const LightPoint> lights;
   // For each the plane with all that it shines on before it, of length 1; none: it shines around.
   std::span<const Vec4> fronts = {};
+  float slack = 0.0f;  // in pixels of this view: how far edges of shadows may be off
 };
 
 struct IndexRange {
@@ -61,6 +62,7 @@ class StencilShadows {
     std::optional<Vec4> front;
     std::size_t number = 0;
     const View* view = nullptr;
+    float slack = 0.0f;
     ShadowVolumes volumes;
     const EdgeList* list = nullptr;
     int reference = 0;

@@ -36,6 +36,7 @@ TileIrradiance::TileIrradiance(const gl::ShaderFiles& files, int tile, int colum
 void TileIrradiance::look_at(const GBuffer& picture) {
   find_planes_.set("u_plane_distance", plane_distance_);
   find_planes_.set("u_points", 0, picture.points);
+  find_planes_.set("u_reflectances", 1, picture.reflectances);
   planes_framebuffer_.bind();
   gl::draw_full_screen(no_vertices_);
   join_.set("u_plane_distance", plane_distance_);
