@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: MIT
-// Which of up to 32 lights a pixel sees of whose tile maps do not tell all: what they tell of the
-// four texels around its point and, where that is nothing, rays.
+// Which of up to 32 lights four pixels of a row see: what maps tell of their tile, then of the four
+// texels around each point and, where that is nothing, rays. What is known of a light is looked up
+// once for the four; a ray is one of any of them, so that neighbours wait less for each other.
+#include "shaders/colour_quads.glsl"
 #include "shaders/map_rays.glsl"
-#include "shaders/map_told.glsl"
+#include "shaders/map_tiles.glsl"
 
+uniform highp usampler2D u_told;        // see shaders/map_tile_masks.frag.glsl
+uniform sampler2D u_mask;               // lights that are asked for
 uniform highp usampler2D u_map_blocks;  // see shaders/shadow_map.glsl
 
-layout(location = 0) out vec4 o_mask;
+layout(location = 0) out uvec4 o_masks;
 
-const int kShadowed = 0;
-const int kSeen = 1;
-const int kOpen = 2;
+uint asked_at(ivec2 pixel) {
+  uvec4 bytes = uvec4(texelFetch(u_mask, pixel, 0) * 255.0 + 0.5);
+  return bytes.r | (bytes.g << 8) | (bytes.b << 16) | (bytes.a << 24);
+}
 
-/// What the map tells by itself.
-int look_up(int light, Receiver p) {
-  LightMap map = map_of(light);
+/// What the map tells by itself: as bits, 1: the light is seen, 2: it does not tell.
+uint look_up(int light, LightMap map, Receiver p) {
+  const uint kShadowed = 0u, kSeen = 1u, kOpen = 2u;
   vec3 way = way_to(map, p.position);
   float cosine = dot(p.geometric, way);
   if (cosine <= 0.0) return kShadowed;
@@ -31,23 +36,41 @@ int look_up(int light, Receiver p) {
 }
 
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  Receiver p = receiver_at(at);
-  uvec2 told = told_of(at);
-  uint seen = told.x, unknown = told.y, open = 0u;
-  do {
+  ivec2 first = first_pixel_of(ivec2(gl_FragCoord.xy)), last = textureSize(u_points, 0) - 1;
+  ivec2 at0 = min(first, last), at1 = min(first + ivec2(1, 0), last);
+  ivec2 at2 = min(first + ivec2(2, 0), last), at3 = min(first + ivec2(3, 0), last);
+  Receiver p0 = receiver_at(at0), p1 = receiver_at(at1);
+  Receiver p2 = receiver_at(at2), p3 = receiver_at(at3);
+  uvec4 asked = uvec4(asked_at(at0), asked_at(at1), asked_at(at2), asked_at(at3));
+  uvec2 told = texelFetch(u_told, first / kTile, 0).xy;
+  uvec4 seen = told.x & asked, open = uvec4(0u);
+  uint unknown = told.y & (asked.x | asked.y | asked.z | asked.w);
+  for (; unknown != 0u; unknown ^= lowest(unknown)) {
     uint bit = lowest(unknown);
-    int answer = look_up(number_of(bit), p);
-    if (answer == kSeen) seen |= bit;
-    if (answer == kOpen) open |= bit;
-    unknown ^= bit;
-  } while (unknown != 0u);
-  if (open != 0u) {
-    do {
-      uint bit = lowest(open);
-      if (sees(number_of(bit), p)) seen |= bit;
-      open ^= bit;
-    } while (open != 0u);
+    int light = number_of(bit);
+    LightMap map = map_of(light);
+    uvec4 answers = uvec4(look_up(light, map, p0), look_up(light, map, p1),
+                          look_up(light, map, p2), look_up(light, map, p3));
+    seen |= (answers & 1u) * bit & asked;
+    open |= (answers >> 1u) * bit & asked;
   }
-  o_mask = bytes_of(seen);
+  bool are_any = any(notEqual(open, uvec4(0u)));
+  if (are_any) {
+    do {
+      uvec4 bits = uvec4(lowest(open.x), open.x == 0u ? lowest(open.y) : 0u, 0u, 0u);
+      if ((open.x | open.y) == 0u) {
+        bits.z = lowest(open.z);
+        if (open.z == 0u) bits.w = lowest(open.w);
+      }
+      Receiver p = p0;
+      if (bits.y != 0u) p = p1;
+      if (bits.z != 0u) p = p2;
+      if (bits.w != 0u) p = p3;
+      uint bit = bits.x | bits.y | bits.z | bits.w;
+      if (sees(number_of(bit), p)) seen |= bits;
+      open ^= bits;
+      are_any = any(notEqual(open, uvec4(0u)));
+    } while (are_any);
+  }
+  o_masks = seen;
 }

@@ -20,7 +20,7 @@ const uint kNoPatch = 0xffffffffu;  // of what has holes, and of several
 
 // The same of larger windows: those of level n are 2 << n texels wide and begin at every (1 << n)th.
 // Levels stand beside the blocks, which are level 0, one after the other upwards.
-const int kMapLevels = 5;
+const int kMapLevels = 6;
 
 ivec2 corner_of_level(int level, ivec2 size_of_blocks) {
   return level == 0 ? ivec2(0)

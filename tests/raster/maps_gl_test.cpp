@@ -126,7 +126,7 @@ Difference compare(const test::RasterStage& stage, std::size_t paths, int camera
 constexpr double kRounding = 0.0005;
 
 /// Edges of shadows move where what makes them is more slender than a texel.
-constexpr double kSlender = 0.005;
+constexpr double kSlender = 0.002;
 
 TEST_P(MapsTest, CornellBox) {
   const Difference d = compare(test::RasterStage(test::own_scene("cornell_box.scene")), 12, 3);
@@ -214,7 +214,7 @@ TEST_P(MapsTest, KeptMapsAreAsGoodAsNewOnes) {
 
 TEST_P(MapsTest, WhereMemoryEndsSomeAreKept) {
   const test::RasterStage stage(test::own_scene("cornell_box.scene"));
-  constexpr int kSize = 64;
+  constexpr int kSize = 128;
   // Of 32 lights.
   constexpr std::size_t kOneGroup = 32 * (kSize * 3 / 4) * (kSize * 3 / 4) * 16;
   Maps maps(stage, {.size = kSize, .bytes = 2 * kOneGroup});

@@ -2,6 +2,7 @@
 #include "lantern/raster/map_masks.h"
 
 #include "lantern/gl/check.h"
+#include "lantern/raster/colour_quads.h"
 #include "lantern/raster/draw_state.h"
 
 #include <bit>
@@ -24,6 +25,19 @@ View view_of_tiles(View view, int tile) {
   return view;
 }
 
+/// The same of quads, those of a tile side by side.
+View view_of_quads(const View& view) {
+  View quads = view_of_tiles(view, kTile);
+  quads.origin.x *= kTile;
+  quads.size.x *= kTile;
+  return quads;
+}
+
+gl::Texture masks_of_quads(int width, int height) {
+  const glm::ivec2 size = QuadLayout{kTile, width, height}.size();
+  return {gl::Format::kRgba32ui, size.x, size.y};
+}
+
 gl::Program program_of(const gl::ShaderFiles& files, const char* fragment, LightFormula formula,
                        std::vector<gl::Definition> definitions = {}) {
   definitions.push_back({"KIND", std::to_string(static_cast<int>(formula))});
@@ -35,7 +49,8 @@ gl::Program program_of(const gl::ShaderFiles& files, const char* fragment, Light
 MapMasks::Programs::Programs(const gl::ShaderFiles& files, LightFormula formula)
     : of_groups(program_of(files, "shaders/map_tile_masks.frag.glsl", formula, {{"GROUPS", "1"}})),
       of_tiles(program_of(files, "shaders/map_tile_masks.frag.glsl", formula, {{"GROUPS", "0"}})),
-      of_pixels(program_of(files, "shaders/map_masks.frag.glsl", formula)) {}
+      of_quads(program_of(files, "shaders/map_masks.frag.glsl", formula,
+                          {{"TILE", std::to_string(kTile)}})) {}
 
 MapMasks::Tiles::Tiles(int width, int height)
     : spheres(gl::Format::kRgba32ui, width, height),
@@ -49,16 +64,17 @@ MapMasks::MapMasks(ShadowMaps& maps, const gl::ShaderFiles& files, int width, in
       of_pixels_(files, "shaders/full_screen.vert.glsl", "shaders/map_receivers.frag.glsl"),
       of_tiles_(files, "shaders/full_screen.vert.glsl", "shaders/map_tiles.frag.glsl"),
       of_groups_(files, "shaders/full_screen.vert.glsl", "shaders/map_tile_groups.frag.glsl"),
-      told_(files, "shaders/full_screen.vert.glsl", "shaders/map_told.frag.glsl"),
+      take_apart_(tile_program(files, "shaders/map_pixel_masks.frag.glsl", kTile)),
       programs_{Programs(files, LightFormula::kSurface), Programs(files, LightFormula::kPunctual),
                 Programs(files, LightFormula::kDirectional)},
       groups_(tiles(width, kGroup), tiles(height, kGroup)),
       tiles_(tiles(width, kTile), tiles(height, kTile)),
       receivers_(gl::Format::kRg32ui, width, height),
+      masks_of_quads_(masks_of_quads(width, height)),
       mask_(gl::Format::kRgba8, width, height),
-      is_open_(gl::Format::kDepth32f, width, height),
       receiver_framebuffer_({&receivers_}),
-      mask_framebuffer_({&mask_}, &is_open_) {}
+      quad_framebuffer_({&masks_of_quads_}),
+      mask_framebuffer_({&mask_}) {}
 
 void MapMasks::look_at(const GBuffer& g_buffer) {
   of_pixels_.set("u_emissions", 0, g_buffer.emissions);
@@ -115,23 +131,20 @@ const gl::Texture& MapMasks::draw(const LightGroup& group, const View& view,
   programs.of_tiles.set("u_told", 4, groups_.told);
   ask(programs.of_tiles, tiles_, view_of_tiles(view, kTile));
 
-  const auto set_told = [&](const gl::Program& program) {
-    program.set("u_told", 0, tiles_.told);
-    program.set("u_mask", 1, asked);
-  };
-  set_told(told_);
+  programs.of_quads.set("u_told", 0, tiles_.told);
+  programs.of_quads.set("u_mask", 1, asked);
+  programs.of_quads.set("u_points", 2, g_buffer.points);
+  programs.of_quads.set("u_receivers", 3, receivers_);
+  maps_.set_in(programs.of_quads, 4);
+  programs.of_quads.set("u_map_blocks", 5, maps_.blocks());
+  programs.of_quads.set("u_map_numbers", 6, maps_.numbers());
+  programs.of_quads.set("u_triangles", 7, maps_.triangles().corners);
+  quad_framebuffer_.bind();
+  set_viewport(view_of_quads(view));
+  gl::draw_full_screen(no_vertices_);
+  take_apart_.set("u_masks", 0, masks_of_quads_);
   mask_framebuffer_.bind();
   set_viewport(view);
-  apply({.depth = DepthUse::kReplace}, View{});
-  gl::draw_full_screen(no_vertices_);
-  set_told(programs.of_pixels);
-  programs.of_pixels.set("u_points", 2, g_buffer.points);
-  programs.of_pixels.set("u_receivers", 3, receivers_);
-  maps_.set_in(programs.of_pixels, 4);
-  programs.of_pixels.set("u_map_blocks", 5, maps_.blocks());
-  programs.of_pixels.set("u_map_numbers", 6, maps_.numbers());
-  programs.of_pixels.set("u_triangles", 7, maps_.triangles().corners);
-  apply({.depth = DepthUse::kTest}, View{});
   gl::draw_full_screen(no_vertices_);
   reset_draw_state();
   times.end();

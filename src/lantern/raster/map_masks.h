@@ -30,7 +30,7 @@ class MapMasks {
 
  private:
   struct Programs {
-    gl::Program of_groups, of_tiles, of_pixels;
+    gl::Program of_groups, of_tiles, of_quads;
     Programs(const gl::ShaderFiles& files, LightFormula formula);
   };
 
@@ -45,11 +45,11 @@ class MapMasks {
   void ask(const gl::Program& program, const Tiles& tiles, const View& view);
 
   ShadowMaps& maps_;
-  gl::Program of_pixels_, of_tiles_, of_groups_, told_;
+  gl::Program of_pixels_, of_tiles_, of_groups_, take_apart_;
   std::array<Programs, kLightFormulas> programs_;
   Tiles groups_, tiles_;
-  gl::Texture receivers_, mask_, is_open_;
-  gl::Framebuffer receiver_framebuffer_, mask_framebuffer_;
+  gl::Texture receivers_, masks_of_quads_, mask_;
+  gl::Framebuffer receiver_framebuffer_, quad_framebuffer_, mask_framebuffer_;
   std::optional<Bounds> box_;  // around the points, once it is asked for
   gl::VertexArray no_vertices_;
 };

@@ -21,7 +21,7 @@ namespace {
 // A number, what a block sees and, in half as many texels again, windows.
 constexpr std::size_t kTexelBytes = 4 * sizeof(std::uint32_t);
 constexpr int kMapsAcross = 4;  // as in shaders/shadow_maps.glsl
-constexpr int kMapLevels = 5;   // as in shaders/shadow_map.glsl
+constexpr int kMapLevels = 6;   // as in shaders/shadow_map.glsl
 
 constexpr GLuint kPosition = 0, kNumber = 1, kPatch = 2, kTexcoord = 3, kColour = 4;
 
@@ -37,6 +37,12 @@ std::uint32_t seed_of(const MapFrame& frame) {
 gl::Program caster_program(const gl::ShaderFiles& files, bool holes) {
   return gl::Program(files, "shaders/shadow_map.vert.glsl", "shaders/shadow_map.frag.glsl",
                      {{"HOLES", holes ? "1" : "0"}});
+}
+
+/// Among many triangles more edges of shadows have to be told apart.
+int size_for(const World& world) {
+  constexpr std::size_t kMany = 10'000;
+  return world.size() < kMany ? 256 : 384;
 }
 
 int rows_of(const LightGroup& group) {
@@ -106,6 +112,7 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
     : triangles_(scene, world),
       bounds_(world.bounds),
       options_(options),
+      size_(options.size.value_or(size_for(world))),
       surfaces_(surfaces),
       solid_(caster_program(files, false)),
       with_holes_(caster_program(files, true)),
@@ -137,12 +144,12 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
   if (!world.colours.empty()) add(by_corner(world, casters_.order, world.colours), kColour, 4);
 }
 
-/// All that is seen is in a picture from infinity, near things too. Holes have the edges of texels
-/// at any size.
+/// All that is seen is in a picture from infinity, near things too, however much that is. Holes
+/// have the edges of texels at any size.
 int ShadowMaps::size_of(LightFormula formula) const {
-  if (formula == LightFormula::kPunctual) return options_.size;
-  if (formula == LightFormula::kSurface) return options_.size * 3 / 4;
-  return (options_.casters == MapCasters::kSolid ? 4 : 2) * options_.size;
+  if (formula == LightFormula::kPunctual) return size_;
+  if (formula == LightFormula::kSurface) return size_ * 3 / 4;
+  return options_.casters == MapCasters::kSolid ? 1024 : 512;
 }
 
 bool ShadowMaps::are_of(const Maps& maps, const LightGroup& group) {

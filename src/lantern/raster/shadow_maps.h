@@ -30,7 +30,9 @@ namespace lantern {
 enum class MapCasters { kSolid, kWithHoles };  // by the material's has_holes()
 
 struct ShadowMapOptions {
-  int size = 256;  // texels a side of an octahedron, a multiple of 64; see size_of() for others
+  // Texels a side of an octahedron, a multiple of 128, see size_of() for others; none: as the
+  // number of triangles asks for.
+  std::optional<int> size = std::nullopt;
   std::size_t bytes = 1024ull << 20;  // that maps may take; the group in use always has its own
   ClipRange range = ClipRange::kFarIs0;
   MapCasters casters = MapCasters::kSolid;
@@ -99,6 +101,7 @@ class ShadowMaps {
   TriangleTextures triangles_;
   Bounds bounds_;
   ShadowMapOptions options_;
+  int size_;
   const Surfaces& surfaces_;
   gl::Program solid_, with_holes_, blocks_, windows_;
   Casters casters_;
