@@ -52,7 +52,7 @@ struct Witness {
 /// How strange a point is to p: 0 on its surface, else how little it is like one that is; and what
 /// it counts, 1 / distance².
 vec2 strange_and_weight(Point p, vec3 other, vec3 normal) {
-  // Beyond 30 degrees it is another side of things.
+  // Beyond 30 degrees it is another side of things, however smooth it is shaded.
   const float kOtherSide = 0.866;
   vec3 way = other - p.position;
   float alike = dot(p.geometric, normal);
@@ -130,8 +130,9 @@ void main() {
 #if AMID_PLANE
     uint left = seen_by_any(seen_by, count);
 #else
-    // From another surface one may not know of a light whether it is seen.
-    bool are_strangers = any(greaterThan(least, vec4(0.0)));
+    // Where one is on another surface the others may not face what a pixel does.
+    vec4 most = max(max(a.strange, b.strange), max(c.strange, d.strange));
+    bool are_strangers = any(greaterThan(most, vec4(0.0)));
     uint left = are_strangers ? lowest_bits(count) : seen_by_any(seen_by, count);
 #endif
     for (; left != 0u; left ^= lowest(left)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which of up to 32 lights four pixels of a row see: what maps tell of their tile, then of the four
-// texels around each point and, where that is nothing, rays. What is known of a light is looked up
-// once for the four; a ray is one of any of them, so that neighbours wait less for each other.
+// texels around each point and, where that is nothing, rays. For texels a light is looked up once
+// for the four; a ray is one of any of them, so that neighbours wait less for each other.
 #include "shaders/colour_quads.glsl"
 #include "shaders/map_rays.glsl"
 #include "shaders/map_tiles.glsl"
@@ -17,9 +17,10 @@ uint asked_at(ivec2 pixel) {
   return bytes.r | (bytes.g << 8) | (bytes.b << 16) | (bytes.a << 24);
 }
 
-/// What the map tells by itself: as bits, 1: the light is seen, 2: it does not tell.
+/// What the map tells by itself: bit 0, the light is seen; bit 1, it does not tell.
+const uint kShadowed = 0u, kSeen = 1u, kOpen = 2u;
+
 uint look_up(int light, LightMap map, Receiver p) {
-  const uint kShadowed = 0u, kSeen = 1u, kOpen = 2u;
   vec3 way = way_to(map, p.position);
   float cosine = dot(p.geometric, way);
   if (cosine <= 0.0) return kShadowed;
@@ -51,11 +52,11 @@ void main() {
     LightMap map = map_of(light);
     uvec4 answers = uvec4(look_up(light, map, p0), look_up(light, map, p1),
                           look_up(light, map, p2), look_up(light, map, p3));
-    seen |= (answers & 1u) * bit & asked;
-    open |= (answers >> 1u) * bit & asked;
+    seen |= (answers & kSeen) * bit & asked;
+    open |= (answers & kOpen) / kOpen * bit & asked;
   }
-  bool are_any = any(notEqual(open, uvec4(0u)));
-  if (are_any) {
+  bool any_open = any(notEqual(open, uvec4(0u)));
+  if (any_open) {
     do {
       uvec4 bits = uvec4(lowest(open.x), open.x == 0u ? lowest(open.y) : 0u, 0u, 0u);
       if ((open.x | open.y) == 0u) {
@@ -69,8 +70,8 @@ void main() {
       uint bit = bits.x | bits.y | bits.z | bits.w;
       if (sees(number_of(bit), p)) seen |= bits;
       open ^= bits;
-      are_any = any(notEqual(open, uvec4(0u)));
-    } while (are_any);
+      any_open = any(notEqual(open, uvec4(0u)));
+    } while (any_open);
   }
   o_masks = seen;
 }

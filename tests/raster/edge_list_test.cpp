@@ -5,6 +5,7 @@
 #include "lantern/raster/edge_list.h"
 
 #include "lantern/core/hash.h"
+#include "lantern/raster/silhouettes.h"
 
 #include "tests/support/numbers.h"
 
@@ -14,8 +15,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lantern {
@@ -317,6 +320,33 @@ TEST(EdgeList, LeavesOutPartsThatThrowNoShadowOnWhatIsAskedFor) {
   EXPECT_GT(compared, 100);
 }
 
+TEST_P(Volumes, SilhouettesOfFewerEdgesAndWhatIsCutOffAreAsMuchAsAll) {
+  const EdgeList list(world_);
+  std::size_t before = 0, after = 0;
+  for (int i = 0; i < 50; ++i) {
+    const LightPoint light = random_light(i);
+    const ShadowVolumes volumes = list.volumes(light, numbers_.in_box(world_.bounds.radius()));
+    std::vector<VolumeEdge> edges = volumes.edges;
+    SilhouetteSimplifier simplifier(list.vertices(), light);
+    const auto cut_off = simplifier.simplify(edges, 0, 0.3f * world_.bounds.radius());
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> times;
+    const auto count = [&](std::uint32_t from, std::uint32_t to, int by) {
+      if (from < to) times[{from, to}] += by;
+      if (to < from) times[{to, from}] -= by;
+    };
+    for (const VolumeEdge& edge : volumes.edges) count(edge.from, edge.to, 1);
+    for (const VolumeEdge& edge : edges) count(edge.from, edge.to, -1);
+    for (const uvec3& t : cut_off) {
+      for (int corner = 0; corner < 3; ++corner) count(t[corner], t[(corner + 1) % 3], -1);
+    }
+    for (const auto& [edge, left] : times) ASSERT_EQ(left, 0) << edge.first << " " << edge.second;
+    ASSERT_EQ(edges.size() + cut_off.size(), volumes.edges.size());
+    before += volumes.edges.size();
+    after += edges.size();
+  }
+  EXPECT_LT(after, before);
+}
+
 /// A ball around the origin, cut into so many columns and half as many rows.
 Scene ball(std::uint32_t columns, float radius = 1.0f) {
   const std::uint32_t rows = columns / 2;
@@ -399,6 +429,34 @@ TEST(EdgeList, SilhouettesOfFewerEdgesAreOffByNoMoreThanAskedFor) {
   EXPECT_GT(shadowed, 1000);
   EXPECT_GT(eyes_in_shadow, 50);
   EXPECT_GT(off, 0);
+}
+
+TEST(EdgeList, SilhouettesAreAsExactAsTheAngleAsks) {
+  const EdgeList list(make_world(ball(48)));
+  const LightPoint light(0.0f, 3.0f, 0.1f, 1.0f);
+  const auto edges = [&](float slack, const Vec3& eye) {
+    return list.volumes(light, eye, VolumeCount::kHalved, {}, slack).edges.size();
+  };
+  const Vec3 far(30.0f, 1.0f, 0.0f), near(1.1f, 0.0f, 0.0f);
+  EXPECT_EQ(edges(1e-5f, far), edges(0.0f, far));
+  EXPECT_LT(edges(2e-3f, far), edges(0.0f, far));
+  EXPECT_LT(edges(1.0f, far), edges(2e-3f, far));
+  EXPECT_LT(edges(5e-3f, far), edges(5e-3f, near));
+}
+
+/// Through a hole of a closed mesh one would see what is cut off, and behind it all dark.
+TEST(EdgeList, SilhouettesOfWhatIsNotConvexStayWhole) {
+  Scene scene = ball(48);
+  Mesh& mesh = scene.meshes[0];
+  for (Vec3& p : mesh.positions) {
+    if (glm::length(Vec2(p.x, p.z)) < 0.5f) p.y *= 0.5f;
+  }
+  const EdgeList list(make_world(scene));
+  for (int i = 0; i < 20; ++i) {
+    const LightPoint light(3.0f, 0.2f * static_cast<float>(i), 0.1f, 1.0f);
+    EXPECT_EQ(list.volumes(light, {0, 9, 0}, VolumeCount::kHalved, {}, 1.0f).edges,
+              list.volumes(light, {0, 9, 0}).edges);
+  }
 }
 
 TEST(EdgeList, ExtrudesAClosedMeshAlongItsSilhouetteOnce) {

@@ -107,8 +107,9 @@ class MapsTest : public ::testing::TestWithParam<gl::Api> {
 };
 INSTANTIATE_TEST_SUITE_P(Apis, MapsTest, ::testing::Values(gl::Api::kDesktop, gl::Api::kEs));
 
-Difference compare(const test::RasterStage& stage, std::size_t paths, int cameras) {
-  Maps maps(stage);
+Difference compare(const test::RasterStage& stage, std::size_t paths, int cameras,
+                   const ShadowMapOptions& options = {}) {
+  Maps maps(stage, options);
   Difference all;
   for (const Camera& camera : test::random_cameras(stage.world.bounds, cameras)) {
     const Difference d = maps.compare(camera, stage.lights(paths));
@@ -143,6 +144,13 @@ TEST_P(MapsTest, TwoRooms) {
 TEST_P(MapsTest, Balls) {
   const Difference d = compare(test::RasterStage(test::room_of_balls(16, 16)), 4, 2);
   EXPECT_LT(d.share(d.leaks), kSlender);
+  EXPECT_LT(d.share(d.lost), kRounding);
+}
+
+TEST_P(MapsTest, BallsInMapsOfFewTriangles) {
+  const test::RasterStage stage(test::room_of_balls(16, 16));
+  const Difference d = compare(stage, 4, 2, {.size = 256});
+  EXPECT_LT(d.share(d.leaks), 2.5 * kSlender);
   EXPECT_LT(d.share(d.lost), kRounding);
 }
 

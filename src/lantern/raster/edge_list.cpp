@@ -41,7 +41,8 @@ Vec4 supporting_plane(const World& world, std::uint32_t triangle, float rounding
   return before ? plane : -plane;
 }
 
-/// Volumes of these triangles around the eye that `line` leads to, less those they are turned from.
+/// Volumes around the eye that `line` leads to: 1 for each of these triangles whose front faces the
+/// light, -1 for each whose back does.
 int count_of(std::span<const uvec3> triangles, const EyeLine& line) {
   int count = 0;
   for (const uvec3& triangle : triangles) {
@@ -132,6 +133,7 @@ EdgeList::EdgeList(const World& world, std::span<const Vec4> walls) {
     const dvec3 normal = glm::cross(dvec3(vertices_[t.y]) - a, dvec3(vertices_[t.z]) - a);
     planes_.emplace_back(Vec3(normal), static_cast<float>(-glm::dot(normal, a)));
   }
+  for (Part& part : parts_) part.convex = is_convex(part);
 }
 
 void EdgeList::weld(const World& world) {
@@ -212,8 +214,14 @@ void EdgeList::sort_by_part() {
     for (int corner = 0; corner < 3; ++corner) bounds.back().add(vertices_[sorted[i][corner]]);
   }
   for (std::size_t p = 0; p < parts_.size(); ++p) {
-    parts_[p].centre = bounds[p].centre();
-    parts_[p].radius = bounds[p].radius();
+    Part& part = parts_[p];
+    part.centre = bounds[p].centre();
+    for (std::uint32_t i = part.first_caster; i < part.first_caster + part.casters; ++i) {
+      for (int corner = 0; corner < 3; ++corner) {
+        const float distance = glm::distance(vertices_[sorted[i][corner]], part.centre);
+        part.radius = std::max(part.radius, distance);
+      }
+    }
   }
 
   std::vector<std::uint32_t> edge_order(edges_.size());
@@ -245,6 +253,27 @@ void EdgeList::sort_by_part() {
   edges_ = std::move(edges);
   faces_ = std::move(faces);
   casters_ = std::move(sorted);
+}
+
+/// Whether the part is closed and convex: where each triangle's neighbours are behind its plane, or
+/// each time before it, all of a connected closed mesh is.
+bool EdgeList::is_convex(const Part& part) const {
+  const bool is_closed = part.paired_edges == part.edges && 2 * part.edges == 3 * part.casters;
+  if (!is_closed) return false;
+  // Dents of that size a chord may well pass over: rounding, not shape.
+  const float rounding = 1e-3f * part.radius;
+  bool before = true, behind = true;
+  for (std::uint32_t e = part.first_edge; e < part.first_edge + part.edges; ++e) {
+    const uvec3 beyond = casters_[faces_[edges_[e].first + 1] / 2];
+    const Vec4& plane = planes_[faces_[edges_[e].first] / 2];
+    for (int corner = 0; corner < 3; ++corner) {
+      const float off =
+          signed_distance(plane, vertices_[beyond[corner]]) / glm::length(Vec3(plane));
+      before &= off >= -rounding;
+      behind &= off <= rounding;
+    }
+  }
+  return before || behind;
 }
 
 std::int8_t EdgeList::facing(std::uint32_t caster, const LightPoint& light) const {
@@ -308,13 +337,22 @@ int EdgeList::count_at_eye(const Part& part, std::span<const std::int8_t> light_
   return count;
 }
 
+/// How far the part's silhouette may be off to be so by no more than the angle for eye and light.
+float EdgeList::silhouette_slack(const Part& part, const LightPoint& light, const Vec3& eye,
+                                 float angle) {
+  // What is smaller than a pixel keeps its shape all the same: chords cut its shadow down.
+  constexpr float kOfRadius = 0.015f;
+  float nearest = glm::distance(eye, part.centre);
+  if (light.w != 0.0f) nearest = std::min(nearest, glm::distance(Vec3(light), part.centre));
+  return std::min(kOfRadius * part.radius, angle * std::max(nearest - part.radius, 0.0f));
+}
+
 ShadowVolumes EdgeList::volumes(const LightPoint& light, const Vec3& eye, VolumeCount count,
                                 std::span<const Vec4> region, float slack) const {
-  constexpr float kSlackOfRadius = 0.01f;
   std::vector<std::int8_t> light_side(planes_.size());
   const EyeLine line(vertices_, light, eye);
   std::optional<SilhouetteSimplifier> simplifier;
-  if (slack > 0.0f) simplifier.emplace(vertices_, light, eye);
+  if (slack > 0.0f) simplifier.emplace(vertices_, light);
   ShadowVolumes result;
   for (const Part& part : parts_) {
     if (is_outside(part, light, region)) continue;
@@ -330,9 +368,9 @@ ShadowVolumes EdgeList::volumes(const LightPoint& light, const Vec3& eye, Volume
       // An odd count of triangles at the eye is an odd one, so never none, wherever it looks.
       result.dark |= of_eye % 2 != 0;
       of_eye /= 2;
-      if (simplifier) {
-        const SilhouetteTolerance tolerance{slack, kSlackOfRadius * part.radius};
-        const auto left_out = simplifier->simplify(result.edges, first, tolerance);
+      if (simplifier && part.convex) {
+        const float distance = silhouette_slack(part, light, eye, slack);
+        const auto left_out = simplifier->simplify(result.edges, first, distance);
         if (may_shadow_eye) of_eye -= count_of(left_out, line);
       }
     }

@@ -57,8 +57,9 @@ class EdgeList {
   std::vector<std::int8_t> facing(const LightPoint& light) const;
 
   /// Of points outside one of the planes, whose normals look inwards and have length 1, nothing is
-  /// asked: parts whose shadows lie wholly there are left out. What is halved may be off by the
-  /// angle `slack`, seen from light or eye, and a hundredth of its size, for fewer edges.
+  /// asked: parts whose shadows lie wholly there are left out. Silhouettes of closed convex parts
+  /// may be off by the angle `slack`, seen from light and eye, and 1.5 % of their part's
+  /// radius; the shadow of what is near a light is so many times further off as it is larger.
   ShadowVolumes volumes(const LightPoint& light, const Vec3& eye,
                         VolumeCount count = VolumeCount::kHalved, std::span<const Vec4> region = {},
                         float slack = 0.0f) const;
@@ -71,6 +72,7 @@ class EdgeList {
     Vec3 centre;
     float radius;
     std::uint32_t first_edge = 0, edges = 0;
+    bool convex = false;             // and closed
     std::uint32_t paired_edges = 0;  // the first of these, between two triangles with one front
   };
   struct Edge {
@@ -84,6 +86,9 @@ class EdgeList {
   /// Whether all that the part can throw a shadow on is outside one of the planes.
   static bool is_outside(const Part& part, const LightPoint& light, std::span<const Vec4> region);
   std::int8_t facing(std::uint32_t caster, const LightPoint& light) const;
+  static float silhouette_slack(const Part& part, const LightPoint& light, const Vec3& eye,
+                                float angle);
+  bool is_convex(const Part& part) const;
   void append_edges(const Part& part, std::span<const std::int8_t> light_side, bool halved,
                     std::vector<VolumeEdge>& edges) const;
   int count_at_eye(const Part& part, std::span<const std::int8_t> light_side, const EyeLine& line,

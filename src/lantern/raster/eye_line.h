@@ -5,6 +5,7 @@
 
 #include "lantern/raster/volume_edge.h"
 
+#include <cstdint>
 #include <span>
 
 namespace lantern {
@@ -18,9 +19,9 @@ class EyeLine {
   /// Whether the line, on both sides of the eye, meets the sphere, or nearly.
   bool meets(const Vec3& centre, float radius) const;
   /// 1: the way goes through the triangle from its front to its back; -1: the other way; 0: not at
-  /// all. Light and eye must be on either side of its plane.
+  /// all. Light and eye must be on different sides of its plane.
   int crossing(const uvec3& triangle) const;
-  /// Whether they are.
+  /// Whether light and eye are on different sides of the triangle's plane.
   bool is_parted_by(const uvec3& triangle) const;
 
  private:

@@ -29,7 +29,7 @@ struct Shadows {
 struct GroupInView {
   const View& view;
   const LightGroup& group;
-  float slack = 0.0f;  // in its pixels: how far volumes may be off
+  float slack = 0.0f;  // in its pixels: how far silhouettes may be off
 };
 
 /// Bit i (RGBA8, the lowest byte in red): whether light i of a group is seen.

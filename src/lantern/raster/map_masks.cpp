@@ -146,7 +146,6 @@ const gl::Texture& MapMasks::draw(const LightGroup& group, const View& view,
   mask_framebuffer_.bind();
   set_viewport(view);
   gl::draw_full_screen(no_vertices_);
-  reset_draw_state();
   times.end();
   gl::check("asking maps");
   return mask_;

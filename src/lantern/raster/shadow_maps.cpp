@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -40,9 +41,9 @@ gl::Program caster_program(const gl::ShaderFiles& files, bool holes) {
 }
 
 /// Among many triangles more edges of shadows have to be told apart.
-int size_for(const World& world) {
+int size_for(std::size_t triangles) {
   constexpr std::size_t kMany = 10'000;
-  return world.size() < kMany ? 256 : 384;
+  return triangles < kMany ? 256 : 384;
 }
 
 int rows_of(const LightGroup& group) {
@@ -112,15 +113,16 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
     : triangles_(scene, world),
       bounds_(world.bounds),
       options_(options),
-      size_(options.size.value_or(size_for(world))),
       surfaces_(surfaces),
       solid_(caster_program(files, false)),
       with_holes_(caster_program(files, true)),
       blocks_(files, "shaders/full_screen.vert.glsl", "shaders/shadow_map_blocks.frag.glsl"),
       windows_(files, "shaders/full_screen.vert.glsl", "shaders/shadow_map_windows.frag.glsl"),
       casters_(casters_of(scene, world, options.casters)),
+      size_(options.size.value_or(size_for(casters_.order.size()))),
       indices_(std::span<const std::uint32_t>()),
       array_({}, &indices_) {
+  assert(size_ % 128 == 0);
   attributes_.reserve(5);
   const auto add = [&](gl::Buffer buffer, GLuint location, int channels, bool integer = false) {
     attributes_.push_back(std::move(buffer));
@@ -144,12 +146,13 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
   if (!world.colours.empty()) add(by_corner(world, casters_.order, world.colours), kColour, 4);
 }
 
-/// All that is seen is in a picture from infinity, near things too, however much that is. Holes
-/// have the edges of texels at any size.
 int ShadowMaps::size_of(LightFormula formula) const {
+  // All that is seen is in one picture, near things too. Holes have the edges of texels at any
+  // size.
+  constexpr int kFromInfinity = 1024, kHolesFromInfinity = 512;
   if (formula == LightFormula::kPunctual) return size_;
   if (formula == LightFormula::kSurface) return size_ * 3 / 4;
-  return options_.casters == MapCasters::kSolid ? 1024 : 512;
+  return options_.casters == MapCasters::kSolid ? kFromInfinity : kHolesFromInfinity;
 }
 
 bool ShadowMaps::are_of(const Maps& maps, const LightGroup& group) {

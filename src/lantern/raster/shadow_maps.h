@@ -30,8 +30,8 @@ namespace lantern {
 enum class MapCasters { kSolid, kWithHoles };  // by the material's has_holes()
 
 struct ShadowMapOptions {
-  // Texels a side of an octahedron, a multiple of 128, see size_of() for others; none: as the
-  // number of triangles asks for.
+  // Texels a side of an octahedron, a multiple of 128; half of one has three quarters of them, what
+  // is seen from infinity a size of its own. None: as the number of casters asks for.
   std::optional<int> size = std::nullopt;
   std::size_t bytes = 1024ull << 20;  // that maps may take; the group in use always has its own
   ClipRange range = ClipRange::kFarIs0;
@@ -101,10 +101,10 @@ class ShadowMaps {
   TriangleTextures triangles_;
   Bounds bounds_;
   ShadowMapOptions options_;
-  int size_;
   const Surfaces& surfaces_;
   gl::Program solid_, with_holes_, blocks_, windows_;
   Casters casters_;
+  int size_;
   std::vector<gl::Buffer> attributes_;
   gl::Buffer indices_;
   gl::VertexArray array_;

@@ -23,7 +23,7 @@ struct LightsInView {
   std::span<const LightPoint> lights;
   // For each the plane with all that it shines on before it, of length 1; none: it shines around.
   std::span<const Vec4> fronts = {};
-  float slack = 0.0f;  // in pixels of this view: how far edges of shadows may be off
+  float slack = 0.0f;  // in pixels of this view: how far silhouettes may be off; see EdgeList
 };
 
 struct IndexRange {
