@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Fragments make as many pixels of a row as a texel has channels, and textures hold them so: red,
-// green and blue of four neighbours, or their masks. The quads of one tile of TILE x TILE pixels are neighbours in a
-// row there.
+// green and blue of four neighbours, or their masks. The quads of one tile of TILE x TILE pixels are
+// neighbours in a row there.
 const int kColumns = TILE == 2 ? 2 : 4;
 
 ivec2 quad_of(ivec2 pixel) {

@@ -101,6 +101,8 @@ void main() {
              point_at(min(at + ivec2(2, 0), last)), point_at(min(at + ivec2(3, 0), last)));
   vec3 sum0 = vec3(0.0), sum1 = vec3(0.0), sum2 = vec3(0.0), sum3 = vec3(0.0);
 #if !AMID_PLANE
+  // Of what lights give, were nothing between, where strangers are: what somebody could see, what
+  // of it is seen, what nobody could.
   vec4 told = vec4(0.0), told_seen = vec4(0.0), untold = vec4(0.0);
 #endif
   for (int share = 0; share < TILE * TILE; ++share) {

@@ -459,6 +459,31 @@ TEST(EdgeList, SilhouettesOfWhatIsNotConvexStayWhole) {
   }
 }
 
+/// No edge of a fine mesh turns by much.
+TEST(EdgeList, SilhouettesOfAFineRingStayWhole) {
+  constexpr std::uint32_t kAround = 400, kAcross = 200;
+  std::vector<Vec3> positions;
+  std::vector<uvec3> triangles;
+  for (std::uint32_t i = 0; i < kAround; ++i) {
+    for (std::uint32_t k = 0; k < kAcross; ++k) {
+      const float u = glm::two_pi<float>() * static_cast<float>(i) / static_cast<float>(kAround);
+      const float v = glm::two_pi<float>() * static_cast<float>(k) / static_cast<float>(kAcross);
+      const float r = 1.0f + 0.4f * std::cos(v);
+      positions.emplace_back(r * std::cos(u), 0.4f * std::sin(v), r * std::sin(u));
+      const std::uint32_t next = (i + 1) % kAround, up = (k + 1) % kAcross;
+      const std::uint32_t a = i * kAcross + k, b = next * kAcross + k;
+      const std::uint32_t c = next * kAcross + up, d = i * kAcross + up;
+      triangles.insert(triangles.end(), {{a, b, c}, {a, c, d}});
+    }
+  }
+  Scene scene;
+  add(scene, positions, triangles);
+  const EdgeList list(make_world(scene));
+  const LightPoint light(3.0f, 1.0f, 0.1f, 1.0f);
+  EXPECT_EQ(list.volumes(light, {0, 9, 0}, VolumeCount::kHalved, {}, 1.0f).edges,
+            list.volumes(light, {0, 9, 0}).edges);
+}
+
 TEST(EdgeList, ExtrudesAClosedMeshAlongItsSilhouetteOnce) {
   const World world = make_world(tetrahedron());
   const EdgeList list(world);

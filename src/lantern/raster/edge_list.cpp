@@ -255,25 +255,29 @@ void EdgeList::sort_by_part() {
   casters_ = std::move(sorted);
 }
 
-/// Whether the part is closed and convex: where each triangle's neighbours are behind its plane, or
-/// each time before it, all of a connected closed mesh is.
+/// Whether the part is closed and convex: a connected closed mesh is where it turns to one side at
+/// all its edges, but for rounding.
 bool EdgeList::is_convex(const Part& part) const {
   const bool is_closed = part.paired_edges == part.edges && 2 * part.edges == 3 * part.casters;
   if (!is_closed) return false;
-  // Dents of that size a chord may well pass over: rounding, not shape.
-  const float rounding = 1e-3f * part.radius;
-  bool before = true, behind = true;
+  // All that may turn the other way, in radians: of a fine mesh no edge turns by much.
+  constexpr float kRounding = 0.05f;
+  float to_front = 0.0f, to_back = 0.0f;
   for (std::uint32_t e = part.first_edge; e < part.first_edge + part.edges; ++e) {
-    const uvec3 beyond = casters_[faces_[edges_[e].first + 1] / 2];
-    const Vec4& plane = planes_[faces_[edges_[e].first] / 2];
+    const Edge& edge = edges_[e];
+    const std::uint32_t one = faces_[edge.first] / 2, other = faces_[edge.first + 1] / 2;
+    const float area = glm::length(Vec3(planes_[one])),
+                of_other = glm::length(Vec3(planes_[other]));
+    if (area == 0.0f || of_other == 0.0f) return false;
+    const float height = of_other / glm::distance(vertices_[edge.a], vertices_[edge.b]);
     for (int corner = 0; corner < 3; ++corner) {
-      const float off =
-          signed_distance(plane, vertices_[beyond[corner]]) / glm::length(Vec3(plane));
-      before &= off >= -rounding;
-      behind &= off <= rounding;
+      const std::uint32_t vertex = casters_[other][corner];
+      if (vertex == edge.a || vertex == edge.b) continue;
+      const float angle = signed_distance(planes_[one], vertices_[vertex]) / (area * height);
+      (angle > 0.0f ? to_front : to_back) += std::abs(angle);
     }
   }
-  return before || behind;
+  return std::min(to_front, to_back) <= kRounding;
 }
 
 std::int8_t EdgeList::facing(std::uint32_t caster, const LightPoint& light) const {
