@@ -46,16 +46,17 @@ double cost(const std::function<void()>& work) {
 constexpr const char* kUnshadowed = R"(
 #include "shaders/lights.glsl"
 #include "shaders/octahedral.glsl"
+#include "shaders/texel.glsl"
 uniform highp usampler2D u_points;
 uniform highp usampler2D u_reflectances;
 uniform int u_light;
 layout(location = 0) out vec4 o_irradiance;
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
-  uvec4 bits = texelFetch(u_points, at, 0);
+  uvec4 bits = texel_of(u_points, at);
   Point p;
   p.position = uintBitsToFloat(bits.xyz);
-  p.shading = unpack_unit(texelFetch(u_reflectances, at, 0).w);
+  p.shading = unpack_unit(texel_of(u_reflectances, at).w);
   p.geometric = unpack_unit(bits.w);
   o_irradiance = vec4(irradiance_from(u_lights[u_light], p), 1.0);
 }
@@ -93,7 +94,7 @@ int main(int argc, char** argv) {
   ShadowMaps maps(scene, world, surfaces, files, {});
   unshadowed.set_block("Lights", 0);
   StencilShadows shadows(world, files, VolumeMethod::kExact);
-  MaskedShading shading(files, kWidth, kHeight, 0);
+  MaskedShading shading(files, kWidth, kHeight, true, false);
   StageTimes times;
   GBuffer g_buffer(kWidth, kHeight);
   gl::Texture mask(gl::Format::kRgba8, kWidth, kHeight);
@@ -136,8 +137,7 @@ int main(int argc, char** argv) {
   const double both = cost([&] {
     for (const LightGroup& group : groups) {
       shadows.draw(group.points, view, mask_framebuffer, times);
-      with_block(group);
-      shading.add(group, g_buffer, mask);
+      shading.add(group, g_buffer, {.mask = &mask}, &group == &groups.front());
     }
   });
   const double map_drawing = cost([&] {

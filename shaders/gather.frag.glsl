@@ -4,6 +4,7 @@
 // hemicube on the cluster sees decides whether anything is between. [Coombe, Harris & Lastra 2004]
 #include "shaders/form_factor.glsl"
 #include "shaders/hemicube.glsl"
+#include "shaders/texel.glsl"
 
 uniform sampler2D points;   // of the elements, several layers of rows
 uniform sampler2D normals;  // w: exposed area
@@ -37,9 +38,9 @@ ivec2 texel_of(int i, ivec2 size) { return ivec2(i % size.x, i / size.x); }
 bool is_met(int triangle, vec3 way) {
   ivec2 size = textureSize(planes, 0);
   ivec2 there = texel_of(triangle, size);
-  vec3 a = texelFetch(triangles, there, 0).xyz - origin;
-  vec3 b = texelFetch(triangles, there + ivec2(0, size.y), 0).xyz - origin;
-  vec3 c = texelFetch(triangles, there + ivec2(0, 2 * size.y), 0).xyz - origin;
+  vec3 a = texel_of(triangles, there).xyz - origin;
+  vec3 b = texel_of(triangles, there + ivec2(0, size.y)).xyz - origin;
+  vec3 c = texel_of(triangles, there + ivec2(0, 2 * size.y)).xyz - origin;
   vec3 sides = vec3(dot(way, cross(a, b)), dot(way, cross(b, c)), dot(way, cross(c, a)));
   return all(greaterThanEqual(sides, vec3(0.0))) || all(lessThanEqual(sides, vec3(0.0)));
 }
@@ -47,13 +48,13 @@ bool is_met(int triangle, vec3 way) {
 /// What the hemicube sees along a local direction: the number of a triangle, or -1.
 int seen(vec3 local) {
   ivec2 pixel = hemicube_pixel(local, textureSize(items, 0).x);
-  return int(texelFetch(items, pixel, 0).x & 0x7fffffffu) - 1;
+  return int(texel_of(items, pixel).x & 0x7fffffffu) - 1;
 }
 
 /// How far the point lies beyond the plane of the triangle, in metres, and how far the origin lies on
 /// this side of it. Exact for each element, so that nothing shadows itself, however flat the angle.
 vec2 beyond(int triangle, vec3 point) {
-  vec4 plane = texelFetch(planes, texel_of(triangle, textureSize(planes, 0)), 0);
+  vec4 plane = texel_of(planes, texel_of(triangle, textureSize(planes, 0)));
   float height = dot(plane.xyz, origin) + plane.w;
   return vec2(-sign(height) * (dot(plane.xyz, point) + plane.w), abs(height));
 }
@@ -76,11 +77,11 @@ bool is_between_or_beside(int triangle, vec3 point, vec3 way) {
   if (is_between(triangle, point, way)) return true;
   ivec2 size = textureSize(planes, 0);
   ivec2 there = texel_of(triangle, size);
-  int its_first = int(texelFetch(triangles, there, 0).w);
-  int its_count = int(texelFetch(triangles, there + ivec2(0, size.y), 0).w);
+  int its_first = int(texel_of(triangles, there).w);
+  int its_count = int(texel_of(triangles, there + ivec2(0, size.y)).w);
   int width = textureSize(neighbours, 0).x;
   for (int i = its_first; i < its_first + its_count; ++i) {
-    ivec4 beside = ivec4(texelFetch(neighbours, ivec2(i % width, i / width), 0)) - 1;
+    ivec4 beside = ivec4(texel_of(neighbours, ivec2(i % width, i / width))) - 1;
     for (int k = 0; k < 4; ++k) {
       if (is_between(beside[k], point, way)) return true;
     }
@@ -121,7 +122,7 @@ bool is_lit(vec3 point, vec3 way, vec3 local) {
 }
 
 vec3 point_of(ivec2 texel, int its_layer) {
-  return texelFetch(points, texel + ivec2(0, its_layer * textureSize(normals, 0).y), 0).xyz;
+  return texel_of(points, texel + ivec2(0, its_layer * textureSize(normals, 0).y)).xyz;
 }
 
 bool sees(vec3 point) {
@@ -142,8 +143,8 @@ vec3 from_elements(vec3 point, vec3 normal, int its_layer) {
   float flux_above = 0.0;
   for (int i = first; i < first + count; ++i) {
     ivec2 there = texel_of(i, size);
-    vec4 leaving = texelFetch(unshot, there, 0);
-    vec4 source = texelFetch(normals, there, 0);
+    vec4 leaving = texel_of(unshot, there);
+    vec4 source = texel_of(normals, there);
     float factor;
     float above;
     if (leaving.w < 1.0) {
@@ -151,9 +152,9 @@ vec3 from_elements(vec3 point, vec3 normal, int its_layer) {
       factor = point_to_disc(way, normal, source.xyz, source.w);
       above = dot(way, normal) > 0.0 ? 1.0 : 0.0;
     } else {
-      vec3 a = texelFetch(corners, there, 0).xyz - point;
-      vec3 b = texelFetch(corners, there + ivec2(0, size.y), 0).xyz - point;
-      vec3 c = texelFetch(corners, there + ivec2(0, 2 * size.y), 0).xyz - point;
+      vec3 a = texel_of(corners, there).xyz - point;
+      vec3 b = texel_of(corners, there + ivec2(0, size.y)).xyz - point;
+      vec3 c = texel_of(corners, there + ivec2(0, 2 * size.y)).xyz - point;
       factor = point_to_triangle(a, b, c, normal);
       above = share_above(dot(a, normal), dot(b, normal), dot(c, normal));
     }
@@ -168,7 +169,7 @@ vec3 from_elements(vec3 point, vec3 normal, int its_layer) {
 void main() {
   ivec2 here = ivec2(gl_FragCoord.xy);
   irradiance = vec4(0.0);
-  vec4 normal = texelFetch(normals, here, 0);
+  vec4 normal = texel_of(normals, here);
   if (normal.w == 0.0) return;
   vec3 point = point_of(here, layer);
   vec3 to_centre = centre - point;

@@ -6,6 +6,7 @@
 #include "shaders/interleaved.glsl"
 #include "shaders/interleaved_masks.glsl"
 #include "shaders/octahedral.glsl"
+#include "shaders/texel.glsl"
 
 uniform highp usampler2D u_points;
 uniform highp usampler2D u_reflectances;
@@ -14,8 +15,8 @@ uniform bool u_first_round;                // there is nothing yet
 uniform float u_plane_distance;            // as far off is another surface
 
 Point point_at(ivec2 at) {
-  uvec4 bits = texelFetch(u_points, at, 0);
-  return Point(uintBitsToFloat(bits.xyz), unpack_unit(texelFetch(u_reflectances, at, 0).w),
+  uvec4 bits = texel_of(u_points, at);
+  return Point(uintBitsToFloat(bits.xyz), unpack_unit(texel_of(u_reflectances, at).w),
                unpack_unit(bits.w));
 }
 
@@ -64,7 +65,7 @@ vec2 strange_and_weight(Point p, vec3 other, vec3 normal) {
 
 Witness witness(ivec2 at, Pixels pixels) {
   ivec2 inside = clamp(at, ivec2(0), textureSize(u_points, 0) - 1);
-  uvec4 bits = texelFetch(u_points, inside, 0);
+  uvec4 bits = texel_of(u_points, inside);
   vec3 point = uintBitsToFloat(bits.xyz), normal = unpack_unit(bits.w);
   vec2 to0 = strange_and_weight(pixels.p0, point, normal);
   vec2 to1 = strange_and_weight(pixels.p1, point, normal);
@@ -105,8 +106,9 @@ void main() {
   // of it is seen, what nobody could.
   vec4 told = vec4(0.0), told_seen = vec4(0.0), untold = vec4(0.0);
 #endif
-  for (int share = 0; share < TILE * TILE; ++share) {
-    uvec2 lights = texelFetch(u_lights_of, ivec2(share, 0), 0).rg;
+  int share = 0;
+  do {
+    uvec2 lights = texel_of(u_lights_of, ivec2(share, 0)).rg;
     int first = int(lights.x), count = int(lights.y);
     // Its pixels around: in two columns and two rows.
     int x0 = at.x - TILE / 2, y1 = at.y + TILE;
@@ -137,41 +139,44 @@ void main() {
     bool are_strangers = any(greaterThan(most, vec4(0.0)));
     uint left = are_strangers ? lowest_bits(count) : seen_by_any(seen_by, count);
 #endif
-    for (; left != 0u; left ^= lowest(left)) {
-      int i = number_of(lowest(left));
-      Light light = u_lights[first + i];
+    if (left != 0u) {
+      do {
+        int i = number_of(lowest(left));
+        Light light = u_lights[first + i];
 #if AMID_PLANE
-      vec4 see = vec4(bit(seen_by, i));
-      vec4 seen =
-          sharpened(see.x * a.weight + see.y * b.weight + see.z * c.weight + see.w * d.weight);
+        vec4 see = vec4(bit(seen_by, i));
+        vec4 seen =
+            sharpened(see.x * a.weight + see.y * b.weight + see.z * c.weight + see.w * d.weight);
 #else
-      bvec4 faces_it = bvec4(faces(a, light), faces(b, light), faces(c, light), faces(d, light));
-      uvec4 sees_it = bit(seen_by, i) & uvec4(faces_it);
-      vec4 can = vec4(faces_it), do_see = vec4(sees_it);
-      vec4 could = can.x * hear_a + can.y * hear_b + can.z * hear_c + can.w * hear_d;
-      vec4 seen = do_see.x * hear_a + do_see.y * hear_b + do_see.z * hear_c + do_see.w * hear_d;
-      seen = sharpened(seen / max(could, 1e-30));
-      // Of what these cannot tell the others may.
-      bool any_sees = (sees_it.x | sees_it.y | sees_it.z | sees_it.w) != 0u;
-      seen = mix(vec4(any_sees), seen, vec4(greaterThan(could, vec4(0.0))));
+        bvec4 faces_it = bvec4(faces(a, light), faces(b, light), faces(c, light), faces(d, light));
+        uvec4 sees_it = bit(seen_by, i) & uvec4(faces_it);
+        vec4 can = vec4(faces_it), do_see = vec4(sees_it);
+        vec4 could = can.x * hear_a + can.y * hear_b + can.z * hear_c + can.w * hear_d;
+        vec4 seen = do_see.x * hear_a + do_see.y * hear_b + do_see.z * hear_c + do_see.w * hear_d;
+        seen = sharpened(seen / max(could, 1e-30));
+        // Of what these cannot tell the others may.
+        bool any_sees = (sees_it.x | sees_it.y | sees_it.z | sees_it.w) != 0u;
+        seen = mix(vec4(any_sees), seen, vec4(greaterThan(could, vec4(0.0))));
 #endif
-      vec3 e0 = irradiance_from(light, pixels.p0), e1 = irradiance_from(light, pixels.p1);
-      vec3 e2 = irradiance_from(light, pixels.p2), e3 = irradiance_from(light, pixels.p3);
-      sum0 += seen.x * e0;
-      sum1 += seen.y * e1;
-      sum2 += seen.z * e2;
-      sum3 += seen.w * e3;
+        vec3 e0 = irradiance_from(light, pixels.p0), e1 = irradiance_from(light, pixels.p1);
+        vec3 e2 = irradiance_from(light, pixels.p2), e3 = irradiance_from(light, pixels.p3);
+        sum0 += seen.x * e0;
+        sum1 += seen.y * e1;
+        sum2 += seen.z * e2;
+        sum3 += seen.w * e3;
 #if !AMID_PLANE
-      if (are_strangers) {
-        vec4 gives = vec4(brightness(e0), brightness(e1), brightness(e2), brightness(e3));
-        bool is_told = any(faces_it);
-        told += is_told ? gives : vec4(0.0);
-        told_seen += is_told ? seen * gives : vec4(0.0);
-        untold += is_told ? vec4(0.0) : gives;
-      }
+        if (are_strangers) {
+          vec4 gives = vec4(brightness(e0), brightness(e1), brightness(e2), brightness(e3));
+          bool is_told = any(faces_it);
+          told += is_told ? gives : vec4(0.0);
+          told_seen += is_told ? seen * gives : vec4(0.0);
+          untold += is_told ? vec4(0.0) : gives;
+        }
 #endif
+        left ^= lowest(left);
+      } while (left != 0u);
     }
-  }
+  } while (++share < TILE * TILE);
 #if !AMID_PLANE
   // Of lights that nobody could see as much is seen as of the others.
   vec4 sum = vec4(brightness(sum0), brightness(sum1), brightness(sum2), brightness(sum3));
@@ -185,7 +190,7 @@ void main() {
   o_green = vec4(sum0.g, sum1.g, sum2.g, sum3.g);
   o_blue = vec4(sum0.b, sum1.b, sum2.b, sum3.b);
   if (u_first_round) return;
-  o_red += texelFetch(u_red, ivec2(gl_FragCoord.xy), 0);
-  o_green += texelFetch(u_green, ivec2(gl_FragCoord.xy), 0);
-  o_blue += texelFetch(u_blue, ivec2(gl_FragCoord.xy), 0);
+  o_red += texel_of(u_red, ivec2(gl_FragCoord.xy));
+  o_green += texel_of(u_green, ivec2(gl_FragCoord.xy));
+  o_blue += texel_of(u_blue, ivec2(gl_FragCoord.xy));
 }

@@ -2,15 +2,12 @@
 // The lights of a round, as many as go into one block, and which of them are seen.
 #include "shaders/bits.glsl"
 #include "shaders/lights.glsl"
+#include "shaders/texel.glsl"
 
 uniform sampler2D u_masks;             // of the shares' pictures
 uniform highp usampler2D u_lights_of;  // of each share the first and how many
 
-uint mask_at(ivec2 place) {
-  vec4 bytes = texelFetch(u_masks, place, 0);
-  uvec2 words = uvec2(bytes.rb * 255.0 + bytes.ga * 65280.0 + 0.5);
-  return words.x | (words.y << 16);
-}
+uint mask_at(ivec2 place) { return mask_of(texel_of(u_masks, place)); }
 
 /// Lights of a share with so many that any of the four sees.
 uint seen_by_any(uvec4 seen, int count) {

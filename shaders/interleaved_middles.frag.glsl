@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The irradiance in the middle of each tile by all lights, and whether it is rough.
 #include "shaders/interleaved.glsl"
+#include "shaders/texel.glsl"
 
 uniform highp usampler2D u_tiles;  // see shaders/interleaved_tiles.frag.glsl
 uniform highp usampler2D u_joins;
@@ -11,8 +12,8 @@ layout(location = 0) out uvec4 o_middle;  // irradiance's bits, what is known of
 vec3 irradiance_of(ivec2 tile) {
   ivec2 quad = ivec2(tile.x / 4, tile.y);
   int i = tile.x % 4;
-  return vec3(texelFetch(u_red, quad, 0)[i], texelFetch(u_green, quad, 0)[i],
-              texelFetch(u_blue, quad, 0)[i]);
+  return vec3(texel_of(u_red, quad)[i], texel_of(u_green, quad)[i],
+              texel_of(u_blue, quad)[i]);
 }
 
 /// How much a neighbour is brighter or darker, if it is one.
@@ -22,7 +23,7 @@ float step_to(ivec2 tile, bool is_joined, float here) {
 
 void main() {
   ivec2 tile = ivec2(gl_FragCoord.xy);
-  uint joins = texelFetch(u_joins, tile, 0).r;
+  uint joins = texel_of(u_joins, tile).r;
   bool before = (joins & kBefore) != 0u, after = (joins & kAfter) != 0u;
   bool above = (joins & kAbove) != 0u, below = (joins & kBelow) != 0u;
   vec3 irradiance = irradiance_of(tile);
@@ -31,7 +32,7 @@ void main() {
                        step_to(tile + ivec2(1, 0), after, here)),
                    max(step_to(tile - ivec2(0, 1), above, here),
                        step_to(tile + ivec2(0, 1), below, here)));
-  float change = texelFetch(u_changes, ivec2(tile.x / 4, tile.y), 0)[tile.x % 4];
+  float change = texel_of(u_changes, ivec2(tile.x / 4, tile.y))[tile.x % 4];
   // More than these is something near, or an edge of a shadow.
   const float kMostStep = 0.3, kMostChange = 0.11;
   bool is_smooth = (before || after) && (above || below) && most <= kMostStep * here &&
@@ -39,11 +40,11 @@ void main() {
   const uint kBothSides = kBefore | kAfter, kAll = kBothSides | kAbove | kBelow;
   bool is_amid = joins == kAll;
   if (is_amid) {
-    uint next = texelFetch(u_joins, tile - ivec2(0, 1), 0).r &
-                texelFetch(u_joins, tile + ivec2(0, 1), 0).r;
+    uint next = texel_of(u_joins, tile - ivec2(0, 1)).r &
+                texel_of(u_joins, tile + ivec2(0, 1)).r;
     is_amid = (next & kBothSides) == kBothSides;
   }
-  bool is_sky = texelFetch(u_tiles, tile, 0) == uvec4(0u);
+  bool is_sky = texel_of(u_tiles, tile) == uvec4(0u);
   o_middle = uvec4(floatBitsToUint(irradiance), joins | (is_smooth || is_sky ? 0u : kRough) |
                                                     (is_amid ? kAmidPlane : 0u));
 }

@@ -4,6 +4,7 @@
 #include "shaders/interleaved.glsl"
 #include "shaders/interleaved_masks.glsl"
 #include "shaders/octahedral.glsl"
+#include "shaders/texel.glsl"
 
 uniform highp usampler2D u_tiles;  // see shaders/interleaved_tiles.frag.glsl
 uniform highp usampler2D u_joins;  // see shaders/interleaved_joins.frag.glsl
@@ -17,13 +18,13 @@ layout(location = 2) out vec4 o_blue;
 layout(location = 3) out vec4 o_changes;
 
 Point middle_of(ivec2 tile) {
-  uvec4 plane = texelFetch(u_tiles, min(tile, textureSize(u_tiles, 0) - 1), 0);
+  uvec4 plane = texel_of(u_tiles, min(tile, textureSize(u_tiles, 0) - 1));
   vec3 normal = unpack_unit(plane.w);
   return Point(uintBitsToFloat(plane.xyz), normal, normal);
 }
 
 uint joins_of(ivec2 tile) {
-  return texelFetch(u_joins, min(tile, textureSize(u_joins, 0) - 1), 0).r;
+  return texel_of(u_joins, min(tile, textureSize(u_joins, 0) - 1)).r;
 }
 
 uvec4 where_joined(uvec4 joins, uint side) {
@@ -39,8 +40,9 @@ void main() {
   ivec2 share_size = textureSize(u_masks, 0) / TILE;
   vec3 sum0 = vec3(0.0), sum1 = vec3(0.0), sum2 = vec3(0.0), sum3 = vec3(0.0);
   vec4 changes = vec4(0.0);
-  for (int share = 0; share < TILE * TILE; ++share) {
-    uvec2 lights = texelFetch(u_lights_of, ivec2(share, 0), 0).rg;
+  int share = 0;
+  do {
+    uvec2 lights = texel_of(u_lights_of, ivec2(share, 0)).rg;
     int first_light = int(lights.x), count = int(lights.y);
     ivec2 of_share = ivec2(share % TILE, share / TILE), corner = of_share * share_size;
     // The middle is between the share's pixel and one of its neighbours on either axis.
@@ -61,30 +63,34 @@ void main() {
     joined = where_joined(joins, is_above ? kBelow : kAbove);
     over = (over & joined) | (own & ~joined);
     vec2 away = abs(vec2(off_middle(of_share.x), off_middle(of_share.y)));
-    for (uint left = seen_by_any(own | beside | over, count); left != 0u; left ^= lowest(left)) {
-      int i = number_of(lowest(left));
-      Light light = u_lights[first_light + i];
-      vec4 seen_here = vec4(bit(own, i)), seen_beside = vec4(bit(beside, i));
-      vec4 seen_over = vec4(bit(over, i));
-      vec4 to_beside = seen_beside - seen_here, to_over = seen_over - seen_here;
-      vec4 seen = seen_here + away.x * to_beside + away.y * to_over;
-      vec3 e0 = irradiance_from(light, p0), e1 = irradiance_from(light, p1);
-      vec3 e2 = irradiance_from(light, p2), e3 = irradiance_from(light, p3);
-      sum0 += seen.x * e0;
-      sum1 += seen.y * e1;
-      sum2 += seen.z * e2;
-      sum3 += seen.w * e3;
-      changes += (abs(to_beside) + abs(to_over)) *
-                 vec4(brightness(e0), brightness(e1), brightness(e2), brightness(e3));
+    uint left = seen_by_any(own | beside | over, count);
+    if (left != 0u) {
+      do {
+        int i = number_of(lowest(left));
+        Light light = u_lights[first_light + i];
+        vec4 seen_here = vec4(bit(own, i)), seen_beside = vec4(bit(beside, i));
+        vec4 seen_over = vec4(bit(over, i));
+        vec4 to_beside = seen_beside - seen_here, to_over = seen_over - seen_here;
+        vec4 seen = seen_here + away.x * to_beside + away.y * to_over;
+        vec3 e0 = irradiance_from(light, p0), e1 = irradiance_from(light, p1);
+        vec3 e2 = irradiance_from(light, p2), e3 = irradiance_from(light, p3);
+        sum0 += seen.x * e0;
+        sum1 += seen.y * e1;
+        sum2 += seen.z * e2;
+        sum3 += seen.w * e3;
+        changes += (abs(to_beside) + abs(to_over)) *
+                   vec4(brightness(e0), brightness(e1), brightness(e2), brightness(e3));
+        left ^= lowest(left);
+      } while (left != 0u);
     }
-  }
+  } while (++share < TILE * TILE);
   o_red = vec4(sum0.r, sum1.r, sum2.r, sum3.r);
   o_green = vec4(sum0.g, sum1.g, sum2.g, sum3.g);
   o_blue = vec4(sum0.b, sum1.b, sum2.b, sum3.b);
   o_changes = changes;
   if (u_first_round) return;
-  o_red += texelFetch(u_red, quad, 0);
-  o_green += texelFetch(u_green, quad, 0);
-  o_blue += texelFetch(u_blue, quad, 0);
-  o_changes += texelFetch(u_changes, quad, 0);
+  o_red += texel_of(u_red, quad);
+  o_green += texel_of(u_green, quad);
+  o_blue += texel_of(u_blue, quad);
+  o_changes += texel_of(u_changes, quad);
 }

@@ -3,6 +3,7 @@
 // where these are not parts of its plane, as it goes on from the other side.
 #include "shaders/colour_quads_out.glsl"
 #include "shaders/interleaved.glsl"
+#include "shaders/texel.glsl"
 
 uniform highp usampler2D u_middles;  // see shaders/interleaved_middles.frag.glsl
 
@@ -10,7 +11,7 @@ vec3 irradiance_of(uvec4 middle) { return uintBitsToFloat(middle.rgb); }
 
 void main() {
   ivec2 at = first_pixel_of(ivec2(gl_FragCoord.xy)), tile = at / TILE;
-  uvec4 here = texelFetch(u_middles, tile, 0);
+  uvec4 here = texel_of(u_middles, tile);
   if ((here.a & kRough) != 0u) discard;
   vec3 middle = irradiance_of(here);
 
@@ -25,19 +26,19 @@ void main() {
   }
   ivec2 to_side = ivec2(0, below ? 1 : -1);
   bool has_side = (here.a & side) != 0u;
-  vec3 change = has_side ? irradiance_of(texelFetch(u_middles, tile + to_side, 0)) - middle
+  vec3 change = has_side ? irradiance_of(texel_of(u_middles, tile + to_side)) - middle
                          : vec3(0.0);
   bool before = (here.a & kBefore) != 0u, after = (here.a & kAfter) != 0u;
   ivec2 to_before = ivec2(before ? -1 : 0, 0), to_after = ivec2(after ? 1 : 0, 0);
-  uvec4 one = texelFetch(u_middles, tile + to_before, 0);
-  uvec4 other = texelFetch(u_middles, tile + to_after, 0);
+  uvec4 one = texel_of(u_middles, tile + to_before);
+  uvec4 other = texel_of(u_middles, tile + to_after);
   vec3 one_change = change, other_change = change;
   if ((one.a & side) != 0u) {
-    one_change = irradiance_of(texelFetch(u_middles, tile + to_before + to_side, 0)) -
+    one_change = irradiance_of(texel_of(u_middles, tile + to_before + to_side)) -
                  irradiance_of(one);
   }
   if ((other.a & side) != 0u) {
-    other_change = irradiance_of(texelFetch(u_middles, tile + to_after + to_side, 0)) -
+    other_change = irradiance_of(texel_of(u_middles, tile + to_after + to_side)) -
                    irradiance_of(other);
   }
   vec3 column = middle + part * change;

@@ -2,6 +2,7 @@
 // The pictures of all shares side by side, from that of all pixels: depth and, with POINTS, all of
 // the G-buffer.
 #include "shaders/interleaved.glsl"
+#include "shaders/texel.glsl"
 
 uniform highp sampler2D u_depth;
 uniform ivec2 u_share_size;
@@ -21,9 +22,9 @@ void main() {
   ivec2 at = share + TILE * (place - share * u_share_size);
   at = min(at, textureSize(u_depth, 0) - 1);
 #if POINTS
-  o_point = texelFetch(u_points, at, 0);
-  o_reflectance = texelFetch(u_reflectances, at, 0);
-  o_emission = texelFetch(u_emissions, at, 0);
+  o_point = texel_of(u_points, at);
+  o_reflectance = texel_of(u_reflectances, at);
+  o_emission = texel_of(u_emissions, at);
 #endif
-  gl_FragDepth = texelFetch(u_depth, at, 0).r;
+  gl_FragDepth = texel_of(u_depth, at).r;
 }

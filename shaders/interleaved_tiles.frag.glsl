@@ -2,6 +2,7 @@
 // Of each tile the mean of its points and their shading normal, packed, if all of it is in one
 // plane.
 #include "shaders/interleaved_planes.glsl"
+#include "shaders/texel.glsl"
 
 uniform highp usampler2D u_points;
 uniform highp usampler2D u_reflectances;
@@ -10,7 +11,7 @@ layout(location = 0) out uvec4 o_tile;
 
 /// With its shading normal: facets of what is smooth are one surface.
 uvec4 point_at(ivec2 at) {
-  return uvec4(texelFetch(u_points, at, 0).xyz, texelFetch(u_reflectances, at, 0).w);
+  return uvec4(texel_of(u_points, at).xyz, texel_of(u_reflectances, at).w);
 }
 
 void main() {

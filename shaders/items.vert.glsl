@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A triangle of the scene onto one face of a hemicube's item buffer.
+#include "shaders/texel.glsl"
 layout(location = 0) in vec3 position;
 layout(location = 1) in uint surface;  // the triangle's number times 2, and 1 if its back is alive
 
@@ -15,7 +16,7 @@ flat out uint item;  // 0 is nothing
 void main() {
   int triangle = int(surface >> 1);
   int width = textureSize(planes, 0).x;
-  vec4 plane = texelFetch(planes, ivec2(triangle % width, triangle / width), 0);
+  vec4 plane = texel_of(planes, ivec2(triangle % width, triangle / width));
   bool front = dot(plane.xyz, origin) + plane.w > 0.0;
   bool dead = !front && (surface & 1u) == 0u;
   item = uint(triangle) + 1u + (dead ? 0x80000000u : 0u);

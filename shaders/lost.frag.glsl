@@ -2,6 +2,7 @@
 // Of each block of 16x16 pixels of an item buffer: the delta form factors of all, and of those that see
 // nothing that could take light up.
 #include "shaders/hemicube.glsl"
+#include "shaders/texel.glsl"
 
 uniform usampler2D items;
 
@@ -15,7 +16,7 @@ void main() {
   for (int y = corner.y; y < min(corner.y + 16, size.y); ++y) {
     for (int x = corner.x; x < min(corner.x + 16, size.x); ++x) {
       float delta = hemicube_delta(ivec2(x, y), size.x);
-      uint item = texelFetch(items, ivec2(x, y), 0).x;
+      uint item = texel_of(items, ivec2(x, y)).x;
       all += delta;
       if (item == 0u || item >= 0x80000000u) lost += delta;
     }

@@ -1,77 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Which of up to 32 lights four pixels of a row see: what maps tell of their tile, then of the four
-// texels around each point and, where that is nothing, rays. For texels a light is looked up once
-// for the four; a ray is one of any of them, so that neighbours wait less for each other.
-#include "shaders/colour_quads.glsl"
-#include "shaders/map_rays.glsl"
-#include "shaders/map_tiles.glsl"
-
-uniform highp usampler2D u_told;        // see shaders/map_tile_masks.frag.glsl
-uniform sampler2D u_mask;               // lights that are asked for
-uniform highp usampler2D u_map_blocks;  // see shaders/shadow_map.glsl
+// The masks of four pixels of a row.
+#include "shaders/map_quads.glsl"
 
 layout(location = 0) out uvec4 o_masks;
 
-uint asked_at(ivec2 pixel) {
-  uvec4 bytes = uvec4(texelFetch(u_mask, pixel, 0) * 255.0 + 0.5);
-  return bytes.r | (bytes.g << 8) | (bytes.b << 16) | (bytes.a << 24);
-}
-
-/// What the map tells by itself: bit 0, the light is seen; bit 1, it does not tell.
-const uint kShadowed = 0u, kSeen = 1u, kOpen = 2u;
-
-uint look_up(int light, LightMap map, Receiver p) {
-  vec3 way = way_to(map, p.position);
-  float cosine = dot(p.geometric, way);
-  if (cosine <= 0.0) return kShadowed;
-  MapPoint at = find_in_map(map, p.position, way);
-#if KIND == 0
-  if (at.height <= 0.0) return kShadowed;
-#endif
-  ivec2 block = block_of(at.texel);
-  if (is_at_border(block, block)) return kOpen;
-  uvec2 sees = texelFetch(u_map_blocks, corner_of_map(light) + block, 0).xy;
-  if ((sees.x == p.its_patch || sees.x == 0u) && near_of(sees.y) > at.depth) return kSeen;
-  // All is further before the point than the point's own surface comes within the block.
-  return (at.depth - far_of(sees.y)) * cosine > at.reach * at.scale ? kShadowed : kOpen;
-}
-
 void main() {
   ivec2 first = first_pixel_of(ivec2(gl_FragCoord.xy)), last = textureSize(u_points, 0) - 1;
-  ivec2 at0 = min(first, last), at1 = min(first + ivec2(1, 0), last);
-  ivec2 at2 = min(first + ivec2(2, 0), last), at3 = min(first + ivec2(3, 0), last);
-  Receiver p0 = receiver_at(at0), p1 = receiver_at(at1);
-  Receiver p2 = receiver_at(at2), p3 = receiver_at(at3);
-  uvec4 asked = uvec4(asked_at(at0), asked_at(at1), asked_at(at2), asked_at(at3));
-  uvec2 told = texelFetch(u_told, first / kTile, 0).xy;
-  uvec4 seen = told.x & asked, open = uvec4(0u);
-  uint unknown = told.y & (asked.x | asked.y | asked.z | asked.w);
-  for (; unknown != 0u; unknown ^= lowest(unknown)) {
-    uint bit = lowest(unknown);
-    int light = number_of(bit);
-    LightMap map = map_of(light);
-    uvec4 answers = uvec4(look_up(light, map, p0), look_up(light, map, p1),
-                          look_up(light, map, p2), look_up(light, map, p3));
-    seen |= (answers & kSeen) * bit & asked;
-    open |= (answers & kOpen) / kOpen * bit & asked;
-  }
-  bool any_open = any(notEqual(open, uvec4(0u)));
-  if (any_open) {
-    do {
-      uvec4 bits = uvec4(lowest(open.x), open.x == 0u ? lowest(open.y) : 0u, 0u, 0u);
-      if ((open.x | open.y) == 0u) {
-        bits.z = lowest(open.z);
-        if (open.z == 0u) bits.w = lowest(open.w);
-      }
-      Receiver p = p0;
-      if (bits.y != 0u) p = p1;
-      if (bits.z != 0u) p = p2;
-      if (bits.w != 0u) p = p3;
-      uint bit = bits.x | bits.y | bits.z | bits.w;
-      if (sees(number_of(bit), p)) seen |= bits;
-      open ^= bits;
-      any_open = any(notEqual(open, uvec4(0u)));
-    } while (any_open);
-  }
-  o_masks = seen;
+  o_masks = seen_by(receiver_at(min(first, last)), receiver_at(min(first + ivec2(1, 0), last)),
+                    receiver_at(min(first + ivec2(2, 0), last)),
+                    receiver_at(min(first + ivec2(3, 0), last)), first);
 }

@@ -4,6 +4,7 @@
 // et al. 2014, Sub-pixel Shadow Mapping]
 #include "shaders/map_receivers.glsl"
 #include "shaders/shadow_maps.glsl"
+#include "shaders/texel.glsl"
 #include "shaders/triangles.glsl"
 
 uniform highp usampler2D u_map_numbers;
@@ -36,7 +37,7 @@ const int kMostSteps = 2;
 
 /// What a texel sees, 0 for what is not in the way of any light.
 uint seen_in(ivec2 corner, ivec2 texel, bool is_nearest, Receiver p) {
-  uint seen = texelFetch(u_map_numbers, corner + wrapped_texel(texel), 0).x & (kNumber | kHoles);
+  uint seen = texel_of(u_map_numbers, corner + wrapped_texel(texel)).x & (kNumber | kHoles);
   bool is_own = (seen & kNumber) - p.first < p.count;
   // What has holes stops what goes through this very texel.
   bool is_other_texel = (seen & kHoles) != 0u && !is_nearest;

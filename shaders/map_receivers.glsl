@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The points that ask maps which lights they see.
 #include "shaders/octahedral.glsl"
+#include "shaders/texel.glsl"
 
 uniform highp usampler2D u_points;
 // The first triangle that is not in the way and 1, or 0 where nothing is seen; how many, kHasPatch.
@@ -15,8 +16,8 @@ struct Receiver {
 };
 
 Receiver receiver_at(ivec2 pixel) {
-  uvec4 point = texelFetch(u_points, pixel, 0);
-  uvec2 bits = texelFetch(u_receivers, pixel, 0).rg;
+  uvec4 point = texel_of(u_points, pixel);
+  uvec2 bits = texel_of(u_receivers, pixel).rg;
   Receiver p;
   p.position = uintBitsToFloat(point.xyz);
   p.geometric = unpack_unit(point.w);

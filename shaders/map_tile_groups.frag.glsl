@@ -2,6 +2,7 @@
 // What encloses the points of each group of tiles, and their normals: see map_tiles.frag.glsl.
 #include "shaders/map_tiles.glsl"
 #include "shaders/octahedral.glsl"
+#include "shaders/texel.glsl"
 
 uniform highp usampler2D u_spheres;
 uniform highp usampler2D u_normals;
@@ -18,9 +19,9 @@ void main() {
   bool is_common = true;
   for (int i = 0; i < kTilesInGroup * kTilesInGroup; ++i) {
     ivec2 at = min(first + ivec2(i % kTilesInGroup, i / kTilesInGroup), last);
-    vec4 sphere = uintBitsToFloat(texelFetch(u_spheres, at, 0));
+    vec4 sphere = uintBitsToFloat(texel_of(u_spheres, at));
     if (sphere.w < 0.0) continue;
-    uvec4 of_tile = texelFetch(u_normals, at, 0);
+    uvec4 of_tile = texel_of(u_normals, at);
     if (common_patch == 0u) common_patch = of_tile.w;
     is_common = is_common && of_tile.w != 0u && of_tile.w == common_patch;
     low = min(low, sphere.xyz - sphere.w);
@@ -36,9 +37,9 @@ void main() {
   float radius = 0.0, thickness = 0.0, spread = 0.0;
   for (int i = 0; i < kTilesInGroup * kTilesInGroup; ++i) {
     ivec2 at = min(first + ivec2(i % kTilesInGroup, i / kTilesInGroup), last);
-    vec4 sphere = uintBitsToFloat(texelFetch(u_spheres, at, 0));
+    vec4 sphere = uintBitsToFloat(texel_of(u_spheres, at));
     if (sphere.w < 0.0) continue;
-    uvec4 of_tile = texelFetch(u_normals, at, 0);
+    uvec4 of_tile = texel_of(u_normals, at);
     vec2 off = uintBitsToFloat(of_tile.yz);
     float turned = length(unpack_unit(of_tile.x) - normal);
     radius = max(radius, length(sphere.xyz - centre) + sphere.w);

@@ -3,6 +3,7 @@
 // masks for light i.
 #include "shaders/map_tiles.glsl"
 #include "shaders/shadow_maps.glsl"
+#include "shaders/texel.glsl"
 #include "shaders/triangles.glsl"
 
 uniform highp usampler2D u_spheres;  // see shaders/map_tiles.frag.glsl
@@ -39,10 +40,10 @@ Sees look(int light, ivec2 low, ivec2 high, int level, uint own) {
   first += corner;
   last += corner;
   Sees sees = Sees(uintBitsToFloat(kInfinitelyFar << 16), 0.0);
-  add(texelFetch(u_map_blocks, first, 0).xy, own, sees);
-  add(texelFetch(u_map_blocks, last, 0).xy, own, sees);
-  add(texelFetch(u_map_blocks, ivec2(first.x, last.y), 0).xy, own, sees);
-  add(texelFetch(u_map_blocks, ivec2(last.x, first.y), 0).xy, own, sees);
+  add(texel_of(u_map_blocks, first).xy, own, sees);
+  add(texel_of(u_map_blocks, last).xy, own, sees);
+  add(texel_of(u_map_blocks, ivec2(first.x, last.y)).xy, own, sees);
+  add(texel_of(u_map_blocks, ivec2(last.x, first.y)).xy, own, sees);
   return sees;
 }
 
@@ -96,16 +97,16 @@ int told(int light, vec4 sphere, vec3 normal, float spread, float thickness, uin
 
 void main() {
   ivec2 tile = ivec2(gl_FragCoord.xy);
-  vec4 sphere = uintBitsToFloat(texelFetch(u_spheres, tile, 0));
+  vec4 sphere = uintBitsToFloat(texel_of(u_spheres, tile));
   o_told = uvec4(0u);
   if (sphere.w < 0.0) return;
-  uvec4 normals = texelFetch(u_normals, tile, 0);
+  uvec4 normals = texel_of(u_normals, tile);
   vec3 normal = unpack_unit(normals.x);
   vec2 off = uintBitsToFloat(normals.yz);
 #if GROUPS
   uint seen = 0u, unknown = lowest_bits(u_count);
 #else
-  uvec2 before = texelFetch(u_told, tile / kTilesInGroup, 0).xy;
+  uvec2 before = texel_of(u_told, tile / kTilesInGroup).xy;
   uint seen = before.x, unknown = before.y;
 #endif
   uint open = 0u;

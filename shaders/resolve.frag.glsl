@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Radiance: what the surface emits and what it reflects of its irradiance.
 #include "shaders/colour_quads_out.glsl"
+#include "shaders/texel.glsl"
 
 uniform highp usampler2D u_reflectances;
 uniform sampler2D u_emissions;
@@ -9,16 +10,16 @@ uniform sampler2D u_red, u_green, u_blue;  // irradiance
 vec3 radiance_of(ivec2 at, vec3 irradiance) {
   at = min(at, textureSize(u_emissions, 0) - 1);
   const float kInvPi = 0.318309886183791;
-  vec4 emission = texelFetch(u_emissions, at, 0);
+  vec4 emission = texel_of(u_emissions, at);
   if (emission.a == 0.0) return emission.rgb;  // the sky
-  vec3 reflectance = uintBitsToFloat(texelFetch(u_reflectances, at, 0).xyz);
+  vec3 reflectance = uintBitsToFloat(texel_of(u_reflectances, at).xyz);
   return emission.rgb + reflectance * irradiance * kInvPi;
 }
 
 void main() {
   ivec2 quad = ivec2(gl_FragCoord.xy), first = first_pixel_of(quad);
-  vec4 red = texelFetch(u_red, quad, 0), green = texelFetch(u_green, quad, 0);
-  vec4 blue = texelFetch(u_blue, quad, 0);
+  vec4 red = texel_of(u_red, quad), green = texel_of(u_green, quad);
+  vec4 blue = texel_of(u_blue, quad);
   vec3 radiance0 = radiance_of(first, vec3(red.x, green.x, blue.x));
   vec3 radiance1 = radiance_of(first + ivec2(1, 0), vec3(red.y, green.y, blue.y));
   vec3 radiance2 = radiance_of(first + ivec2(2, 0), vec3(red.z, green.z, blue.z));

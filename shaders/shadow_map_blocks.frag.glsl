@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Finishes maps: what each texel sees, and each block of two by two.
 #include "shaders/shadow_map.glsl"
+#include "shaders/texel.glsl"
 
 uniform highp usampler2D u_texels;  // of this map alone
 uniform ivec2 u_first;  // where it will be
@@ -13,7 +14,7 @@ void main() {
   uvec3 seen[4];  // number, depth, patch
   for (int i = 0; i < 4; ++i) {
     ivec2 texel = min(in_map + ivec2(i & 1, i >> 1), ivec2(u_map_size - 1));
-    seen[i] = texelFetch(u_texels, texel, 0).xyz;
+    seen[i] = texel_of(u_texels, texel).xyz;
     if (seen[i].x == 0u) seen[i].yz = uvec2(kInfinitelyFar << 16, 0u);
   }
   uint nearest = seen[0].y, far = 0u, first = seen[0].z;

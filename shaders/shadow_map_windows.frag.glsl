@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the windows of a level of finished maps see, by those of the level before.
 #include "shaders/shadow_map.glsl"
+#include "shaders/texel.glsl"
 
 uniform highp usampler2D u_windows;
 
@@ -11,7 +12,7 @@ void main() {
   uint the_patch = 0u, near = kInfinitelyFar, far = 0u;
   for (int i = 0; i < 4; ++i) {
     // A window begins in the middle of the one before it.
-    uvec2 sees = texelFetch(u_windows, min(first + 2 * ivec2(i & 1, i >> 1), last), 0).xy;
+    uvec2 sees = texel_of(u_windows, min(first + 2 * ivec2(i & 1, i >> 1), last)).xy;
     near = min(near, sees.y >> 16);
     far = max(far, sees.y & 0xffffu);
     if (the_patch == 0u) the_patch = sees.x;

@@ -2,6 +2,7 @@
 // Where points lie in the shadow maps of up to 32 lights of one KIND (see shaders/lights.glsl).
 #include "shaders/octahedral.glsl"
 #include "shaders/shadow_map.glsl"
+#include "shaders/texel.glsl"
 
 // A row for each light. Mesa looks textures up faster than uniform blocks.
 uniform highp sampler2D u_map_frames;
@@ -13,9 +14,9 @@ struct LightMap {
 };
 
 LightMap map_of(int light) {
-  return LightMap(texelFetch(u_map_frames, ivec2(0, light), 0),
-                  texelFetch(u_map_frames, ivec2(1, light), 0),
-                  texelFetch(u_map_frames, ivec2(2, light), 0));
+  return LightMap(texel_of(u_map_frames, ivec2(0, light)),
+                  texel_of(u_map_frames, ivec2(1, light)),
+                  texel_of(u_map_frames, ivec2(2, light)));
 }
 
 /// As long as the light is far; of a directional light a unit vector.

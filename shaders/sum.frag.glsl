@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The sum over each block of 16x16 texels; WEIGHTED by the area of the elements.
+#include "shaders/texel.glsl"
 uniform sampler2D values;
 #ifdef WEIGHTED
 uniform sampler2D normals;  // w: exposed area
@@ -13,9 +14,9 @@ void main() {
   vec4 sum = vec4(0.0);
   for (int y = corner.y; y < min(corner.y + 16, size.y); ++y) {
     for (int x = corner.x; x < min(corner.x + 16, size.x); ++x) {
-      vec4 value = texelFetch(values, ivec2(x, y), 0);
+      vec4 value = texel_of(values, ivec2(x, y));
 #ifdef WEIGHTED
-      value *= texelFetch(normals, ivec2(x, y), 0).w;
+      value *= texel_of(normals, ivec2(x, y)).w;
 #endif
       sum += value;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Bilinear look-ups as lantern/scene/texture.h has them: texel centres at (i + 0.5) / width, sRGB
 // decoded before the filter. Hardware filters round their weights.
+#include "shaders/texel.glsl"
 const int kRepeat = 0;
 const int kClamp = 1;
 const int kMirror = 2;
@@ -25,7 +26,7 @@ vec3 srgb_to_linear(vec3 c) {
 }
 
 vec4 texel(sampler2D image, ivec2 at, bool is_srgb) {
-  vec4 t = texelFetch(image, at, 0);
+  vec4 t = texel_of(image, at);
   return is_srgb ? vec4(srgb_to_linear(t.rgb), t.a) : t;
 }
 

@@ -62,7 +62,8 @@ struct Maps {
                                          .radius = stage.world.bounds.radius()});
     lighting.draw(view, lights, [] { return true; });
     std::vector<float> green;
-    for (const Rgb& e : lighting.shading().irradiance().read({1, kWidth, kHeight})) {
+    const QuadLayout quads{MaskedShading::kTile, kWidth, kHeight};
+    for (const Rgb& e : lighting.shading().irradiance().read(quads)) {
       green.push_back(e.g);
     }
     return green;

@@ -1,48 +1,49 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/raster/lighting.h"
 
-#include <algorithm>
-#include <array>
-
 namespace lantern {
-namespace {
-
-constexpr GLuint kLightsBinding = 0;
-
-}  // namespace
 
 Lighting::Lighting(const Surfaces& surfaces, const Shadows& shadows, StageTimes& times,
                    const gl::ShaderFiles& files, int width, int height)
     : surfaces_(surfaces),
       times_(times),
       g_buffer_(width, height),
-      masks_(shadows, times, files, width, height),
       mask_(g_buffer_.depth),
-      light_block_(std::span<const LightRecord>()),
-      shading_(files, width, height, kLightsBinding) {}
+      shading_(files, width, height, shadows.volumes || shadows.maps.size() != 1,
+               !shadows.maps.empty()) {
+  Shadows others = shadows;
+  if (!shadows.maps.empty()) {
+    last_maps_.emplace(*shadows.maps.back(), files, width, height);
+    others.maps.pop_back();
+  }
+  const bool only_maps = last_maps_ && !others.volumes && others.maps.empty();
+  if (!only_maps) masks_.emplace(others, times, files, width, height);
+}
 
 void Lighting::draw(const View& view, std::span<const LightGroup> groups,
                     const std::function<bool()>& group_done) {
   times_.begin(Stage::kSurfaces);
   surfaces_.draw(view, g_buffer_);
-  masks_.look_at(g_buffer_);
+  if (masks_) masks_->look_at(g_buffer_);
+  if (last_maps_) last_maps_->look_at(g_buffer_);
   times_.end();
-  shading_.clear();
+  if (groups.empty()) shading_.clear();
   for (const LightGroup& group : groups) {
-    const GroupInView in_view{view, group};
-    add(group, masks_.draw(std::span(&in_view, 1), mask_));
+    add(view, group, &group == &groups.front());
     if (!group_done()) break;
   }
 }
 
-/// What the lights of the mask's bits give.
-void Lighting::add(const LightGroup& group, const gl::Texture& mask) {
-  std::array<LightRecord, kLightsInGroup> records;
-  std::copy(group.records.begin(), group.records.end(), records.begin());
-  light_block_.write(std::span<const LightRecord>(records));
-  light_block_.bind_as_uniforms(kLightsBinding);
-  times_.begin(Stage::kShading);
-  shading_.add(group, g_buffer_, mask);
+void Lighting::add(const View& view, const LightGroup& group, bool is_first) {
+  SeenBy seen;
+  const GroupInView in_view{view, group};
+  if (masks_) seen.mask = &masks_->draw(std::span(&in_view, 1), mask_);
+  if (last_maps_) {
+    last_maps_->ask(group, view, times_);
+    seen.maps = &*last_maps_;
+  }
+  times_.begin(last_maps_ ? Stage::kMaps : Stage::kShading);
+  shading_.add(group, g_buffer_, seen, is_first);
   times_.end();
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What a view sees and how much light gets there: surfaces into a G-buffer, which lights each pixel
-// sees as bits of a mask, 32 lights shaded at a time.
+// sees, 32 lights shaded at a time.
 #pragma once
 
 #include "lantern/gl/objects.h"
 #include "lantern/gl/program.h"
 #include "lantern/raster/light_masks.h"
+#include "lantern/raster/map_tiles.h"
 #include "lantern/raster/masked_shading.h"
 #include "lantern/raster/raster_lights.h"
 #include "lantern/raster/stage_times.h"
@@ -13,6 +14,7 @@
 #include "lantern/raster/view.h"
 
 #include <functional>
+#include <optional>
 #include <span>
 
 namespace lantern {
@@ -32,14 +34,15 @@ class Lighting {
   const MaskedShading& shading() const { return shading_; }
 
  private:
-  void add(const LightGroup& group, const gl::Texture& mask);
+  void add(const View& view, const LightGroup& group, bool is_first);
 
   const Surfaces& surfaces_;
   StageTimes& times_;
   GBuffer g_buffer_;
-  LightMasks masks_;
+  // What all but the last maps tell is a mask; those are asked where light is added.
+  std::optional<LightMasks> masks_;
   MaskPicture mask_;
-  gl::Buffer light_block_;
+  std::optional<MapTiles> last_maps_;
   MaskedShading shading_;
 };
 

@@ -3,39 +3,50 @@
 
 #include "lantern/gl/check.h"
 
+#include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 
 namespace lantern {
 namespace {
 
-gl::Program shade_program(const gl::ShaderFiles& files, LightFormula formula,
-                          GLuint lights_binding) {
-  gl::Program program = tile_program(files, "shaders/shade_masked.frag.glsl", 1,
-                                     {{"KIND", std::to_string(static_cast<int>(formula))}});
-  program.set_block("Lights", lights_binding);
-  return program;
-}
+constexpr GLuint kLightsBinding = 0;
 
 }  // namespace
 
-MaskedShading::MaskedShading(const gl::ShaderFiles& files, int width, int height,
-                             GLuint lights_binding)
-    : shade_{shade_program(files, LightFormula::kSurface, lights_binding),
-             shade_program(files, LightFormula::kPunctual, lights_binding),
-             shade_program(files, LightFormula::kDirectional, lights_binding)},
-      sums_{QuadTarget(QuadLayout{1, width, height}.size()),
-            QuadTarget(QuadLayout{1, width, height}.size())} {}
+MaskedShading::MaskedShading(const gl::ShaderFiles& files, int width, int height, bool by_mask,
+                             bool by_maps)
+    : lights_(std::span<const LightRecord>()),
+      sums_{QuadTarget(QuadLayout{kTile, width, height}.size()),
+            QuadTarget(QuadLayout{kTile, width, height}.size())} {
+  const char* shader =
+      by_maps ? "shaders/shade_mapped.frag.glsl" : "shaders/shade_masked.frag.glsl";
+  for (int formula = 0; formula < kLightFormulas; ++formula) {
+    shade_.push_back(tile_program(
+        files, shader, kTile, {{"KIND", std::to_string(formula)}, {"ASKED", by_mask ? "1" : "0"}}));
+    shade_.back().set_block("Lights", kLightsBinding);
+  }
+}
 
-void MaskedShading::clear() { sums_[0].clear(); }
-
-void MaskedShading::add(const LightGroup& group, const GBuffer& g_buffer, const gl::Texture& mask) {
+void MaskedShading::add(const LightGroup& group, const GBuffer& g_buffer, const SeenBy& seen,
+                        bool is_first) {
+  std::array<LightRecord, kLightsInGroup> records;
+  std::copy(group.records.begin(), group.records.end(), records.begin());
+  lights_.write(std::span<const LightRecord>(records));
+  lights_.bind_as_uniforms(kLightsBinding);
   const gl::Program& program = shade_[static_cast<std::size_t>(group.formula)];
   program.set("u_points", 0, g_buffer.points);
   program.set("u_reflectances", 1, g_buffer.reflectances);
-  program.set("u_mask", 2, mask);
-  sums_[0].colours.set_in(program, 3);
-  program.set("u_count", static_cast<int>(group.records.size()));
+  program.set("u_first_lights", is_first ? 1 : 0);
+  sums_[0].colours.set_in(program, 2);
+  constexpr int kUnit = 2 + ColourQuads::kUnits;
+  if (seen.mask) program.set("u_mask", kUnit, *seen.mask);
+  if (seen.maps) {
+    seen.maps->set_in(program, kUnit + 1);
+  } else {
+    program.set("u_count", static_cast<int>(group.records.size()));
+  }
   sums_[1].framebuffer.bind();
   gl::draw_full_screen(no_vertices_);
   std::swap(sums_[0], sums_[1]);

@@ -5,27 +5,39 @@
 #include "lantern/gl/objects.h"
 #include "lantern/gl/program.h"
 #include "lantern/raster/colour_quads.h"
+#include "lantern/raster/map_tiles.h"
 #include "lantern/raster/raster_lights.h"
 #include "lantern/raster/surfaces.h"
 
 #include <array>
+#include <vector>
 
 namespace lantern {
 
+/// What says which lights a pixel sees; both must say so.
+struct SeenBy {
+  const gl::Texture* mask = nullptr;  // bit i (RGBA8, the lowest byte in red): light i
+  const MapTiles* maps = nullptr;     // that were asked for these lights
+};
+
 class MaskedShading {
  public:
-  /// Of pictures of this size, with lights of the uniform block with this binding.
-  MaskedShading(const gl::ShaderFiles& files, int width, int height, GLuint lights_binding);
+  /// Of pictures of this size. Lights are seen by a mask, by maps, or by both.
+  MaskedShading(const gl::ShaderFiles& files, int width, int height, bool by_mask, bool by_maps);
 
   /// No light.
-  void clear();
-  /// And what the lights of the mask's bits give.
-  void add(const LightGroup& group, const GBuffer& g_buffer, const gl::Texture& mask);
+  void clear() { sums_[0].clear(); }
+  /// And what the lights give that are seen; before the first of them there is none.
+  void add(const LightGroup& group, const GBuffer& g_buffer, const SeenBy& seen, bool is_first);
   /// In W/m².
   const QuadTarget& irradiance() const { return sums_[0]; }
 
+  /// Of the quads of pixels.
+  static constexpr int kTile = MapTiles::kTile;
+
  private:
-  std::array<gl::Program, kLightFormulas> shade_;
+  std::vector<gl::Program> shade_;  // by formula
+  gl::Buffer lights_;
   std::array<QuadTarget, 2> sums_;  // what there is, and that with a group of lights more
   gl::VertexArray no_vertices_;
 };

@@ -84,7 +84,7 @@ struct Rasteriser::State {
                      .range = gl.has(gl::kClipControl) ? ClipRange::kFarIs0 : ClipRange::kFarIs1},
         surfaces(scene, all, files),
         solid(solid_part(scene, all)),
-        resolve(tile_program(files, "shaders/resolve.frag.glsl", with.tile)),
+        resolve(tile_program(files, "shaders/resolve.frag.glsl", quads().tile)),
         radiance(quads().size()) {
     const bool by_maps = with.shadows == ShadowMethod::kMaps;
     const bool none_solid = solid && solid->triangles.empty();
@@ -128,7 +128,9 @@ struct Rasteriser::State {
     whole.step = 1;
     return make_view(camera, whole);
   }
-  QuadLayout quads() const { return {options.tile, options.width, options.height}; }
+  QuadLayout quads() const {
+    return {options.tile > 1 ? options.tile : MaskedShading::kTile, options.width, options.height};
+  }
   const ColourQuads& irradiance() const {
     return interleaving ? interleaving->irradiance() : lighting->shading().irradiance().colours;
   }

@@ -167,6 +167,17 @@ void Surfaces::set_view(const gl::Program& program, const View& view) const {
 /// What may be seen of a batch, those with the same sides that follow each other at once.
 void Surfaces::draw_bodies(const Batch& batch, const View& view) {
   const std::vector<Vec4> sides = sides_of(view);
+  std::vector<Body> bodies = batch.bodies;
+  std::erase_if(bodies, [&](const Body& body) { return !may_lie_inside(body, sides); });
+  // The nearest first, so that little is drawn over, unless that takes too many calls.
+  constexpr std::size_t kMostCalls = 256;
+  if (bodies.size() <= kMostCalls) {
+    const auto distance = [&](const Body& body) {
+      return glm::distance(body.centre, view.eye) - body.radius;
+    };
+    std::stable_sort(bodies.begin(), bodies.end(),
+                     [&](const Body& a, const Body& b) { return distance(a) < distance(b); });
+  }
   GLint first = 0;
   GLsizei count = 0;
   SeenSide side = SeenSide::kBoth;
@@ -176,8 +187,7 @@ void Surfaces::draw_bodies(const Batch& batch, const View& view) {
     glDrawArrays(GL_TRIANGLES, first, count);
     count = 0;
   };
-  for (const Body& body : batch.bodies) {
-    if (!may_lie_inside(body, sides)) continue;
+  for (const Body& body : bodies) {
     const SeenSide seen = seen_side(body, view.eye);
     if (static_cast<GLint>(3 * body.first) != first + count || seen != side) {
       draw();
