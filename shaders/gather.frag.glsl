@@ -32,12 +32,12 @@ uniform float near_square;  // of the distance below which elements are summed
 
 layout(location = 0) out vec4 irradiance;
 
-ivec2 texel_of(int i, ivec2 size) { return ivec2(i % size.x, i / size.x); }
+ivec2 place_of(int i, ivec2 size) { return ivec2(i % size.x, i / size.x); }
 
 /// Whether the segment from the origin goes through the triangle, whose plane it crosses.
 bool is_met(int triangle, vec3 way) {
   ivec2 size = textureSize(planes, 0);
-  ivec2 there = texel_of(triangle, size);
+  ivec2 there = place_of(triangle, size);
   vec3 a = texel_of(triangles, there).xyz - origin;
   vec3 b = texel_of(triangles, there + ivec2(0, size.y)).xyz - origin;
   vec3 c = texel_of(triangles, there + ivec2(0, 2 * size.y)).xyz - origin;
@@ -54,7 +54,7 @@ int seen(vec3 local) {
 /// How far the point lies beyond the plane of the triangle, in metres, and how far the origin lies on
 /// this side of it. Exact for each element, so that nothing shadows itself, however flat the angle.
 vec2 beyond(int triangle, vec3 point) {
-  vec4 plane = texel_of(planes, texel_of(triangle, textureSize(planes, 0)));
+  vec4 plane = texel_of(planes, place_of(triangle, textureSize(planes, 0)));
   float height = dot(plane.xyz, origin) + plane.w;
   return vec2(-sign(height) * (dot(plane.xyz, point) + plane.w), abs(height));
 }
@@ -76,7 +76,7 @@ bool is_between_or_beside(int triangle, vec3 point, vec3 way) {
   if (triangle < 0) return false;
   if (is_between(triangle, point, way)) return true;
   ivec2 size = textureSize(planes, 0);
-  ivec2 there = texel_of(triangle, size);
+  ivec2 there = place_of(triangle, size);
   int its_first = int(texel_of(triangles, there).w);
   int its_count = int(texel_of(triangles, there + ivec2(0, size.y)).w);
   int width = textureSize(neighbours, 0).x;
@@ -142,7 +142,7 @@ vec3 from_elements(vec3 point, vec3 normal, int its_layer) {
   float flux = 0.0;
   float flux_above = 0.0;
   for (int i = first; i < first + count; ++i) {
-    ivec2 there = texel_of(i, size);
+    ivec2 there = place_of(i, size);
     vec4 leaving = texel_of(unshot, there);
     vec4 source = texel_of(normals, there);
     float factor;

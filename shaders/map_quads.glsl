@@ -7,8 +7,7 @@
 #include "shaders/map_tiles.glsl"
 #include "shaders/texel.glsl"
 
-uniform highp usampler2D u_told;        // see shaders/map_tile_masks.frag.glsl
-uniform highp usampler2D u_map_blocks;  // see shaders/shadow_map.glsl
+uniform highp usampler2D u_told;  // see shaders/map_tile_masks.frag.glsl
 #if ASKED
 uniform sampler2D u_mask;  // the lights that each pixel asks for
 #endif
@@ -26,7 +25,7 @@ uint look_up(int light, LightMap map, Receiver p) {
 #endif
   ivec2 block = block_of(at.texel);
   if (is_at_border(block, block)) return kOpen;
-  uvec2 sees = texel_of(u_map_blocks, corner_of_map(light) + block).xy;
+  uvec2 sees = texel_of(u_map_blocks, block_texel, corner_of_map(light) + block).xy;
   if ((sees.x == p.its_patch || sees.x == 0u) && near_of(sees.y) > at.depth) return kSeen;
   // All is further before the point than the point's own surface comes within the block.
   return (at.depth - far_of(sees.y)) * cosine > at.reach * at.scale ? kShadowed : kOpen;
@@ -34,6 +33,8 @@ uint look_up(int light, LightMap map, Receiver p) {
 
 /// The masks of these pixels, the first of which is here; each has its bits in what it asks for.
 uvec4 seen_by(Receiver p0, Receiver p1, Receiver p2, Receiver p3, ivec2 first) {
+  begin_maps();
+  begin_rays();
   uvec2 told = texel_of(u_told, first / kTile).xy;
 #if ASKED
   ivec2 last = textureSize(u_mask, 0) - 1;

@@ -10,15 +10,23 @@
 uniform highp usampler2D u_map_numbers;
 uniform highp sampler2D u_triangles;
 
+vec2 number_texel;
+Rows triangle_rows;
+
+void begin_rays() {
+  number_texel = texel_size(u_map_numbers);
+  triangle_rows = rows_of(textureSize(u_triangles, 0));
+}
+
 /// Beyond its border an octahedron goes on at the same border, mirrored. Half of one ends there,
 /// and no block lies beyond.
 ivec2 wrapped_texel(ivec2 texel) {
 #if KIND == 0
   return texel;
 #endif
-  ivec2 inside = clamp(texel, ivec2(0), ivec2(u_map_size - 1));
-  if (inside.x != texel.x) return ivec2(inside.x, u_map_size - 1 - inside.y);
-  if (inside.y != texel.y) return ivec2(u_map_size - 1 - inside.x, inside.y);
+  ivec2 inside = clamp(texel, ivec2(0), ivec2(map_size - 1));
+  if (inside.x != texel.x) return ivec2(inside.x, map_size - 1 - inside.y);
+  if (inside.y != texel.y) return ivec2(map_size - 1 - inside.x, inside.y);
   return inside;
 }
 
@@ -37,7 +45,8 @@ const int kMostSteps = 2;
 
 /// What a texel sees, 0 for what is not in the way of any light.
 uint seen_in(ivec2 corner, ivec2 texel, bool is_nearest, Receiver p) {
-  uint seen = texel_of(u_map_numbers, corner + wrapped_texel(texel)).x & (kNumber | kHoles);
+  uint seen = texel_of(u_map_numbers, number_texel, corner + wrapped_texel(texel)).x;
+  seen &= kNumber | kHoles;
   bool is_own = (seen & kNumber) - p.first < p.count;
   // What has holes stops what goes through this very texel.
   bool is_other_texel = (seen & kHoles) != 0u && !is_nearest;
@@ -105,8 +114,9 @@ uint next_of(inout Question open) {
 bool is_in_way(inout Question open, Receiver p) {
   uint seen = next_of(open), number = seen & kNumber;
   vec3 way = open.way;
-  vec4 a = corner_of(u_triangles, number - 1u, 0);
-  vec4 b = corner_of(u_triangles, number - 1u, 1), c = corner_of(u_triangles, number - 1u, 2);
+  vec4 a = corner_of(u_triangles, triangle_rows, number - 1u, 0);
+  vec4 b = corner_of(u_triangles, triangle_rows, number - 1u, 1);
+  vec4 c = corner_of(u_triangles, triangle_rows, number - 1u, 2);
   vec3 ab = b.xyz - a.xyz, ac = c.xyz - a.xyz, from_a = p.position - a.xyz;
   vec3 across = cross(way, ac), turned = cross(from_a, ab);
   float volume = dot(ab, across), part = 1.0 / volume;

@@ -17,7 +17,8 @@ void main() {
   o_receiver = uvec2(0u);
   if (own == 0.0) return;
   // Number of the triangle, first of its patch, how many, 1: the front is outside, 2: the back.
-  uvec4 patch_of = texel_of(u_patches, texel_number(int(abs(own)) - 1, textureSize(u_patches, 0).x));
+  Rows rows = rows_of(textureSize(u_patches, 0));
+  uvec4 patch_of = texel_of(u_patches, rows.size, texel_number(int(abs(own)) - 1, rows));
   bool is_outside = (patch_of.w & (own > 0.0 ? 1u : 2u)) != 0u;
   o_receiver = is_outside ? uvec2(patch_of.y + 1u, patch_of.z | kHasPatch)
                           : uvec2(patch_of.x + 1u, 1u);

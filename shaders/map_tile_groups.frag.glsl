@@ -17,7 +17,8 @@ void main() {
   vec3 low = vec3(kFar), high = vec3(-kFar), normals = vec3(0.0);
   uint common_patch = 0u;
   bool is_common = true;
-  for (int i = 0; i < kTilesInGroup * kTilesInGroup; ++i) {
+  int i = 0;
+  do {
     ivec2 at = min(first + ivec2(i % kTilesInGroup, i / kTilesInGroup), last);
     vec4 sphere = uintBitsToFloat(texel_of(u_spheres, at));
     if (sphere.w < 0.0) continue;
@@ -27,7 +28,7 @@ void main() {
     low = min(low, sphere.xyz - sphere.w);
     high = max(high, sphere.xyz + sphere.w);
     normals += unpack_unit(of_tile.x);
-  }
+  } while (++i < kTilesInGroup * kTilesInGroup);
   o_sphere = uvec4(floatBitsToUint(vec4(0.0, 0.0, 0.0, -1.0)));
   o_normals = uvec4(0u);
   if (low.x > high.x) return;
@@ -35,7 +36,8 @@ void main() {
   uint packed_normal = pack_unit(normals);
   vec3 normal = unpack_unit(packed_normal);
   float radius = 0.0, thickness = 0.0, spread = 0.0;
-  for (int i = 0; i < kTilesInGroup * kTilesInGroup; ++i) {
+  i = 0;
+  do {
     ivec2 at = min(first + ivec2(i % kTilesInGroup, i / kTilesInGroup), last);
     vec4 sphere = uintBitsToFloat(texel_of(u_spheres, at));
     if (sphere.w < 0.0) continue;
@@ -45,7 +47,7 @@ void main() {
     radius = max(radius, length(sphere.xyz - centre) + sphere.w);
     thickness = max(thickness, abs(dot(normal, sphere.xyz - centre)) + off.y + turned * sphere.w);
     spread = max(spread, turned + off.x);
-  }
+  } while (++i < kTilesInGroup * kTilesInGroup);
   o_sphere = floatBitsToUint(vec4(centre, radius));
   o_normals = uvec4(packed_normal, floatBitsToUint(spread), floatBitsToUint(thickness),
                     is_common ? common_patch : 0u);

@@ -8,7 +8,6 @@
 
 uniform highp usampler2D u_spheres;  // see shaders/map_tiles.frag.glsl
 uniform highp usampler2D u_normals;
-uniform highp usampler2D u_map_blocks;  // see shaders/shadow_map.glsl
 #if GROUPS
 uniform int u_count;  // of lights
 #else
@@ -33,17 +32,17 @@ void add(uvec2 window, uint own, inout Sees sees) {
 
 /// What the texels from one to another see, by two windows a side of a level where that suffices.
 Sees look(int light, ivec2 low, ivec2 high, int level, uint own) {
-  ivec2 first = min(low >> level, (u_map_size >> level) - 2);
+  ivec2 first = min(low >> level, (map_size >> level) - 2);
   ivec2 last = max(first, (high >> level) - 1);
-  ivec2 size = ivec2(u_map_size * kMapsAcross, textureSize(u_map_blocks, 0).y);
+  ivec2 size = ivec2(map_size * kMapsAcross, textureSize(u_map_blocks, 0).y);
   ivec2 corner = corner_of_level(level, size) + (corner_of_map(light) >> level);
   first += corner;
   last += corner;
   Sees sees = Sees(uintBitsToFloat(kInfinitelyFar << 16), 0.0);
-  add(texel_of(u_map_blocks, first).xy, own, sees);
-  add(texel_of(u_map_blocks, last).xy, own, sees);
-  add(texel_of(u_map_blocks, ivec2(first.x, last.y)).xy, own, sees);
-  add(texel_of(u_map_blocks, ivec2(last.x, first.y)).xy, own, sees);
+  add(texel_of(u_map_blocks, block_texel, first).xy, own, sees);
+  add(texel_of(u_map_blocks, block_texel, last).xy, own, sees);
+  add(texel_of(u_map_blocks, block_texel, ivec2(first.x, last.y)).xy, own, sees);
+  add(texel_of(u_map_blocks, block_texel, ivec2(last.x, first.y)).xy, own, sees);
   return sees;
 }
 
@@ -60,7 +59,7 @@ int told(int light, vec4 sphere, vec3 normal, float spread, float thickness, uin
   if (cosine + slack <= 0.0) return kShadowed;
   MapPoint at = find_in_map(map, sphere.xyz, way);
 #if KIND == 2
-  vec2 reach = sphere.w * float(u_map_size) * 0.5 * vec2(length(map.x.xyz), length(map.y.xyz));
+  vec2 reach = sphere.w * float(map_size) * 0.5 * vec2(length(map.x.xyz), length(map.y.xyz));
 #else
 #if KIND == 0
   // How far points reach over the light's plane. What gives less than a millionth of what it could
@@ -73,13 +72,13 @@ int told(int light, vec4 sphere, vec3 normal, float spread, float thickness, uin
 #if KIND == 0
   // By so much the lesser of the coordinates over depth changes, where all of the sphere has less
   // than this; the larger one changes by sqrt(2) at most.
-  vec2 off = abs(2.0 * at.texel / float(u_map_size) - 1.0);
+  vec2 off = abs(2.0 * at.texel / float(map_size) - 1.0);
   float lesser = min(off.x, off.y) + 2.3 * part;
   float change = sqrt(2.0 + 3.0 * lesser * lesser);
 #else
   float change = sqrt(2.0);
 #endif
-  vec2 reach = vec2(0.5 * float(u_map_size) * change * part);
+  vec2 reach = vec2(0.5 * float(map_size) * change * part);
 #endif
   ivec2 low = block_of(at.texel - reach), high = block_of(at.texel + reach) + 1;
   if (is_at_border(low, high - 1)) return kOpen;
@@ -96,6 +95,7 @@ int told(int light, vec4 sphere, vec3 normal, float spread, float thickness, uin
 }
 
 void main() {
+  begin_maps();
   ivec2 tile = ivec2(gl_FragCoord.xy);
   vec4 sphere = uintBitsToFloat(texel_of(u_spheres, tile));
   o_told = uvec4(0u);

@@ -14,7 +14,8 @@ void main() {
   vec3 low = vec3(kFar), high = vec3(-kFar), normals = vec3(0.0);
   uint common_patch = 0u, there = 0u;  // bits of pixels that see something
   bool is_common = true;
-  for (int i = 0; i < kTile * kTile; ++i) {
+  int i = 0;
+  do {
     ivec2 at = min(first + ivec2(i % kTile, i / kTile), last);
     Receiver p = receiver_at(at);
     if (p.first == 0u) continue;
@@ -24,7 +25,7 @@ void main() {
     low = min(low, p.position);
     high = max(high, p.position);
     normals += p.geometric;
-  }
+  } while (++i < kTile * kTile);
   o_sphere = uvec4(floatBitsToUint(vec4(0.0, 0.0, 0.0, -1.0)));
   o_normals = uvec4(0u);
   if (there == 0u) return;
@@ -32,7 +33,8 @@ void main() {
   uint packed_normal = pack_unit(normals);
   vec3 normal = unpack_unit(packed_normal);
   float radius = 0.0, thickness = 0.0, spread = 0.0;
-  for (int i = 0; i < kTile * kTile; ++i) {
+  i = 0;
+  do {
     if ((there >> uint(i) & 1u) == 0u) continue;
     ivec2 at = min(first + ivec2(i % kTile, i / kTile), last);
     Receiver p = receiver_at(at);
@@ -40,7 +42,7 @@ void main() {
     radius = max(radius, length(off));
     thickness = max(thickness, abs(dot(normal, off)));
     spread = max(spread, length(p.geometric - normal));
-  }
+  } while (++i < kTile * kTile);
   o_sphere = floatBitsToUint(vec4(centre, radius));
   o_normals = uvec4(packed_normal, floatBitsToUint(spread), floatBitsToUint(thickness),
                     is_common ? common_patch : 0u);

@@ -6,6 +6,17 @@
 
 // A row for each light. Mesa looks textures up faster than uniform blocks.
 uniform highp sampler2D u_map_frames;
+uniform highp usampler2D u_map_blocks;  // see shaders/shadow_map.glsl
+
+// What loops would find anew for each look-up, once begin_maps() was called.
+int map_size;
+vec2 frame_texel, block_texel;
+
+void begin_maps() {
+  map_size = u_map_size;
+  frame_texel = texel_size(u_map_frames);
+  block_texel = texel_size(u_map_blocks);
+}
 
 const int kMapsAcross = 4;
 
@@ -14,9 +25,9 @@ struct LightMap {
 };
 
 LightMap map_of(int light) {
-  return LightMap(texel_of(u_map_frames, ivec2(0, light)),
-                  texel_of(u_map_frames, ivec2(1, light)),
-                  texel_of(u_map_frames, ivec2(2, light)));
+  return LightMap(texel_of(u_map_frames, frame_texel, ivec2(0, light)),
+                  texel_of(u_map_frames, frame_texel, ivec2(1, light)),
+                  texel_of(u_map_frames, frame_texel, ivec2(2, light)));
 }
 
 /// As long as the light is far; of a directional light a unit vector.
@@ -39,7 +50,7 @@ struct MapPoint {
 
 MapPoint find_in_map(LightMap map, vec3 position, vec3 way) {
   MapPoint found;
-  float across = float(u_map_size);
+  float across = float(map_size);
 #if KIND == 2
   vec2 at = vec2(dot(map.x.xyz, position) + map.x.w, dot(map.y.xyz, position) + map.y.w);
   found.depth = dot(map.z.xyz, position) + map.z.w;
@@ -58,7 +69,7 @@ MapPoint find_in_map(LightMap map, vec3 position, vec3 way) {
   found.depth = abs(local.x) + abs(local.y) + abs(local.z);
   vec2 at = local.xy / found.depth;
   if (local.z < 0.0) at = fold(at);
-  // A texel across and one up are (1, 1, -2) * 2 / u_map_size on the octahedron.
+  // A texel across and one up are (1, 1, -2) * 2 / map_size on the octahedron.
   const float kLongest = 2.45;
 #endif
   found.scale = found.depth;
@@ -71,7 +82,7 @@ MapPoint find_in_map(LightMap map, vec3 position, vec3 way) {
 
 /// The corner of a light's map in the texture.
 ivec2 corner_of_map(int light) {
-  return ivec2(light & (kMapsAcross - 1), light / kMapsAcross) * u_map_size;
+  return ivec2(light & (kMapsAcross - 1), light / kMapsAcross) * map_size;
 }
 
 /// The first of the four texels around; at the map's border not all of them are in it.
@@ -79,11 +90,11 @@ ivec2 block_of(vec2 texel) {
   ivec2 block = ivec2(floor(texel - 0.5));
 #if KIND == 0
   // Beyond is nothing to be lit.
-  block = clamp(block, ivec2(0), ivec2(u_map_size - 2));
+  block = clamp(block, ivec2(0), ivec2(map_size - 2));
 #endif
   return block;
 }
 
 bool is_at_border(ivec2 low, ivec2 high) {
-  return min(low.x, low.y) < 0 || max(high.x, high.y) > u_map_size - 2;
+  return min(low.x, low.y) < 0 || max(high.x, high.y) > map_size - 2;
 }

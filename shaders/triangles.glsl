@@ -4,10 +4,19 @@
 #include "shaders/bits.glsl"
 #include "shaders/texel.glsl"
 
-ivec2 texel_number(int i, int width) { return ivec2(i & (width - 1), i >> number_of(uint(width))); }
+struct Rows {
+  int last, shift;  // of a row's columns, their exponent
+  vec2 size;        // of a texel
+};
+
+Rows rows_of(ivec2 size) {
+  return Rows(size.x - 1, number_of(uint(size.x)), 1.0 / vec2(size));
+}
+
+ivec2 texel_number(int i, Rows rows) { return ivec2(i & rows.last, i >> rows.shift); }
 
 /// A corner of a triangle and the number of the triangle beyond the edge from it to the next and 1,
 /// or 0.
-vec4 corner_of(highp sampler2D corners, uint triangle, int corner) {
-  return texel_of(corners, texel_number(3 * int(triangle) + corner, textureSize(corners, 0).x));
+vec4 corner_of(highp sampler2D corners, Rows rows, uint triangle, int corner) {
+  return texel_of(corners, rows.size, texel_number(3 * int(triangle) + corner, rows));
 }
