@@ -4,7 +4,6 @@
 // for the four; a ray is one of any of them, so that neighbours wait less for each other.
 #include "shaders/colour_quads.glsl"
 #include "shaders/map_rays.glsl"
-#include "shaders/map_tiles.glsl"
 #include "shaders/texel.glsl"
 
 uniform highp usampler2D u_told;  // see shaders/map_tile_masks.frag.glsl
@@ -35,7 +34,7 @@ uint look_up(int light, LightMap map, Receiver p) {
 uvec4 seen_by(Receiver p0, Receiver p1, Receiver p2, Receiver p3, ivec2 first) {
   begin_maps();
   begin_rays();
-  uvec2 told = texel_of(u_told, first / kTile).xy;
+  uvec2 told = texel_of(u_told, first / TILE).xy;
 #if ASKED
   ivec2 last = textureSize(u_mask, 0) - 1;
   uvec4 asked = uvec4(mask_of(texel_of(u_mask, min(first, last))),

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What maps tell of all points of a tile at once, or with GROUPS of a group of tiles: bit i of two
 // masks for light i.
-#include "shaders/map_tiles.glsl"
 #include "shaders/shadow_maps.glsl"
 #include "shaders/texel.glsl"
 #include "shaders/triangles.glsl"
@@ -106,7 +105,7 @@ void main() {
 #if GROUPS
   uint seen = 0u, unknown = lowest_bits(u_count);
 #else
-  uvec2 before = texel_of(u_told, tile / kTilesInGroup).xy;
+  uvec2 before = texel_of(u_told, tile / TILES_IN_GROUP).xy;
   uint seen = before.x, unknown = before.y;
 #endif
   uint open = 0u;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What encloses the points of each tile of pixels, and their normals.
+// What encloses the points of each tile of TILE x TILE pixels, and their normals.
 #include "shaders/map_receivers.glsl"
-#include "shaders/map_tiles.glsl"
 
 layout(location = 0) out uvec4 o_sphere;  // bits of floats: centre, radius
 // A unit vector; how far others are from it, how far points are off its plane through the centre, as
@@ -9,14 +8,14 @@ layout(location = 0) out uvec4 o_sphere;  // bits of floats: centre, radius
 layout(location = 1) out uvec4 o_normals;
 
 void main() {
-  ivec2 first = kTile * ivec2(gl_FragCoord.xy), last = textureSize(u_points, 0) - 1;
+  ivec2 first = TILE * ivec2(gl_FragCoord.xy), last = textureSize(u_points, 0) - 1;
   const float kFar = 1e30;
   vec3 low = vec3(kFar), high = vec3(-kFar), normals = vec3(0.0);
   uint common_patch = 0u, there = 0u;  // bits of pixels that see something
   bool is_common = true;
   int i = 0;
   do {
-    ivec2 at = min(first + ivec2(i % kTile, i / kTile), last);
+    ivec2 at = min(first + ivec2(i % TILE, i / TILE), last);
     Receiver p = receiver_at(at);
     if (p.first == 0u) continue;
     there |= 1u << uint(i);
@@ -25,7 +24,7 @@ void main() {
     low = min(low, p.position);
     high = max(high, p.position);
     normals += p.geometric;
-  } while (++i < kTile * kTile);
+  } while (++i < TILE * TILE);
   o_sphere = uvec4(floatBitsToUint(vec4(0.0, 0.0, 0.0, -1.0)));
   o_normals = uvec4(0u);
   if (there == 0u) return;
@@ -36,13 +35,13 @@ void main() {
   i = 0;
   do {
     if ((there >> uint(i) & 1u) == 0u) continue;
-    ivec2 at = min(first + ivec2(i % kTile, i / kTile), last);
+    ivec2 at = min(first + ivec2(i % TILE, i / TILE), last);
     Receiver p = receiver_at(at);
     vec3 off = p.position - centre;
     radius = max(radius, length(off));
     thickness = max(thickness, abs(dot(normal, off)));
     spread = max(spread, length(p.geometric - normal));
-  } while (++i < kTile * kTile);
+  } while (++i < TILE * TILE);
   o_sphere = floatBitsToUint(vec4(centre, radius));
   o_normals = uvec4(packed_normal, floatBitsToUint(spread), floatBitsToUint(thickness),
                     is_common ? common_patch : 0u);

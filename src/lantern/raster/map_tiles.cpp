@@ -2,6 +2,7 @@
 #include "lantern/raster/map_tiles.h"
 
 #include "lantern/gl/check.h"
+#include "lantern/raster/colour_quads.h"
 #include "lantern/raster/draw_state.h"
 
 #include <bit>
@@ -10,13 +11,20 @@
 namespace lantern {
 namespace {
 
-constexpr int kGroup = 4 * MapTiles::kTile;  // as in shaders/map_tiles.glsl
+constexpr int kTilesInGroup = 4;  // a side
+constexpr int kGroup = kTilesInGroup * MapTiles::kTile;
 
 int tiles(int pixels, int tile) { return (pixels + tile - 1) / tile; }
 
+gl::Program program_for_tiles(const gl::ShaderFiles& files, const char* fragment,
+                              std::vector<gl::Definition> definitions = {}) {
+  definitions.push_back({"TILES_IN_GROUP", std::to_string(kTilesInGroup)});
+  return tile_program(files, fragment, MapTiles::kTile, definitions);
+}
+
 gl::Program ask_program(const gl::ShaderFiles& files, LightFormula formula, bool groups) {
-  return gl::Program(
-      files, "shaders/full_screen.vert.glsl", "shaders/map_tile_masks.frag.glsl",
+  return program_for_tiles(
+      files, "shaders/map_tile_masks.frag.glsl",
       {{"KIND", std::to_string(static_cast<int>(formula))}, {"GROUPS", groups ? "1" : "0"}});
 }
 
@@ -42,8 +50,8 @@ MapTiles::Tiles::Tiles(int width, int height)
 MapTiles::MapTiles(ShadowMaps& maps, const gl::ShaderFiles& files, int width, int height)
     : maps_(maps),
       find_receivers_(files, "shaders/full_screen.vert.glsl", "shaders/map_receivers.frag.glsl"),
-      find_tiles_(files, "shaders/full_screen.vert.glsl", "shaders/map_tiles.frag.glsl"),
-      find_groups_(files, "shaders/full_screen.vert.glsl", "shaders/map_tile_groups.frag.glsl"),
+      find_tiles_(program_for_tiles(files, "shaders/map_tiles.frag.glsl")),
+      find_groups_(program_for_tiles(files, "shaders/map_tile_groups.frag.glsl")),
       groups_(tiles(width, kGroup), tiles(height, kGroup)),
       tiles_(tiles(width, kTile), tiles(height, kTile)),
       receivers_(gl::Format::kRg32ui, width, height),
