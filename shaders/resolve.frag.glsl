@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Radiance: what the surface emits and what it reflects of its irradiance.
+// Radiance: what the surface emits and what it reflects of its irradiance; with ADD added to that of
+// other samples.
 #include "shaders/colour_quads_out.glsl"
 #include "shaders/texel.glsl"
 
 uniform highp usampler2D u_reflectances;
 uniform sampler2D u_emissions;
 uniform sampler2D u_red, u_green, u_blue;  // irradiance
+#if ADD
+uniform sampler2D u_red_before, u_green_before, u_blue_before;
+#endif
 
 vec3 radiance_of(ivec2 at, vec3 irradiance) {
   at = min(at, textureSize(u_emissions, 0) - 1);
@@ -27,4 +31,9 @@ void main() {
   o_red = vec4(radiance0.r, radiance1.r, radiance2.r, radiance3.r);
   o_green = vec4(radiance0.g, radiance1.g, radiance2.g, radiance3.g);
   o_blue = vec4(radiance0.b, radiance1.b, radiance2.b, radiance3.b);
+#if ADD
+  o_red += texel_of(u_red_before, quad);
+  o_green += texel_of(u_green_before, quad);
+  o_blue += texel_of(u_blue_before, quad);
+#endif
 }

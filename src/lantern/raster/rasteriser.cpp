@@ -70,8 +70,8 @@ struct Rasteriser::State {
   std::list<ShadowMaps> maps;
   std::optional<Lighting> lighting;  // or, where pixels have lights of their own,
   std::optional<Interleaving> interleaving;
-  gl::Program resolve;
-  QuadTarget radiance;
+  gl::Program resolve, resolve_and_add;
+  std::array<QuadTarget, 2> radiance;  // the sum of some samples, and that with one more
   gl::VertexArray no_vertices;
 
   State(const Scene& scene, const World& all, const gl::Info& gl, const RasterOptions& with)
@@ -84,8 +84,9 @@ struct Rasteriser::State {
                      .range = gl.has(gl::kClipControl) ? ClipRange::kFarIs0 : ClipRange::kFarIs1},
         surfaces(scene, all, files),
         solid(solid_part(scene, all)),
-        resolve(tile_program(files, "shaders/resolve.frag.glsl", quads().tile)),
-        radiance(quads().size()) {
+        resolve(resolve_program(false)),
+        resolve_and_add(resolve_program(true)),
+        radiance{QuadTarget(quads().size()), QuadTarget(quads().size())} {
     const bool by_maps = with.shadows == ShadowMethod::kMaps;
     const bool none_solid = solid && solid->triangles.empty();
     if (!by_maps && !none_solid) {
@@ -104,6 +105,11 @@ struct Rasteriser::State {
     } else {
       lighting.emplace(surfaces, shadows, times, files, with.width, with.height);
     }
+  }
+
+  gl::Program resolve_program(bool add) const {
+    return tile_program(files, "shaders/resolve.frag.glsl", quads().tile,
+                        {{"ADD", add ? "1" : "0"}});
   }
 
   /// Of sample number `n`.
@@ -138,8 +144,8 @@ struct Rasteriser::State {
     return interleaving ? interleaving->g_buffer() : lighting->g_buffer();
   }
 
-  /// The radiance of sample number `n` of all pixels.
-  void draw(const Camera& camera, std::span<const LightGroup> groups, std::size_t n,
+  /// Adds the radiance of sample number `n` of all pixels to that of others, unless it `is_first`.
+  void draw(const Camera& camera, std::span<const LightGroup> groups, std::size_t n, bool is_first,
             const std::function<bool()>& group_done) {
     if (interleaving) {
       interleaving->draw(camera, place_in_pixel(n), groups, group_done);
@@ -147,11 +153,19 @@ struct Rasteriser::State {
       lighting->draw(view_of_sample(camera, n), groups, group_done);
     }
     times.begin(Stage::kResolve);
-    resolve.set("u_reflectances", 0, whole_g_buffer().reflectances);
-    resolve.set("u_emissions", 1, whole_g_buffer().emissions);
-    irradiance().set_in(resolve, 2);
-    radiance.framebuffer.bind();
+    const gl::Program& program = is_first ? resolve : resolve_and_add;
+    program.set("u_reflectances", 0, whole_g_buffer().reflectances);
+    program.set("u_emissions", 1, whole_g_buffer().emissions);
+    irradiance().set_in(program, 2);
+    if (!is_first) {
+      constexpr int kUnit = 2 + ColourQuads::kUnits;
+      program.set("u_red_before", kUnit, radiance[0].colours.red);
+      program.set("u_green_before", kUnit + 1, radiance[0].colours.green);
+      program.set("u_blue_before", kUnit + 2, radiance[0].colours.blue);
+    }
+    radiance[1].framebuffer.bind();
     gl::draw_full_screen(no_vertices);
+    std::swap(radiance[0], radiance[1]);
     times.end();
     gl::check("drawing the radiance");
   }
@@ -185,24 +199,22 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
     const auto groups = s.groups(lights, bounds, n);
     for (ShadowMaps& maps : s.maps) maps.keep(groups);
     std::size_t step = 0;
-    s.draw(camera, groups, n, [&] {
+    s.draw(camera, groups, n, sample == 0, [&] {
       const std::size_t done = image.pixels.size() *
                                (static_cast<std::size_t>(sample) * groups.size() + ++step) /
                                (static_cast<std::size_t>(options.samples) * groups.size());
       if (pixels_done) pixels_done(done - std::exchange(reported, done));
       return !stop.load();
     });
-    const std::vector<Rgb> radiance = s.radiance.read(s.quads());
     s.times.collect();
     if (volumes) {
       volumes->add(*s.volumes, point_of(lights, *options.show_volumes, s.world.coordinate_scale()),
                    s.view_of_sample(camera, n));
     }
-    const float share = 1.0f / static_cast<float>(options.samples);
-    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-      image.pixels[i] += share * radiance[i];
-    }
   }
+  const std::vector<Rgb> sum = s.radiance[0].read(s.quads());
+  const float share = 1.0f / static_cast<float>(options.samples);
+  for (std::size_t i = 0; i < sum.size(); ++i) image.pixels[i] = share * sum[i];
   if (volumes) volumes->blend_over(image);
   return image;
 }
@@ -212,7 +224,7 @@ void Rasteriser::draw_frame(const Camera& camera, const VirtualLights& lights,
   state_->times.collect();
   const auto groups = state_->groups(lights, bounds, sample);
   for (ShadowMaps& maps : state_->maps) maps.keep(groups);
-  state_->draw(camera, groups, sample, [] { return true; });
+  state_->draw(camera, groups, sample, true, [] { return true; });
 }
 
 std::map<std::string, double> Rasteriser::seconds_of_stages() {
