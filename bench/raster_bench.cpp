@@ -94,7 +94,7 @@ int main(int argc, char** argv) {
   ShadowMaps maps(scene, world, surfaces, files, {});
   unshadowed.set_block("Lights", 0);
   StencilShadows shadows(world, files, VolumeMethod::kExact);
-  MaskedShading shading(files, kWidth, kHeight, true, false);
+  MaskedShading shading(files, kWidth, kHeight, Witnesses::kMask);
   StageTimes times;
   GBuffer g_buffer(kWidth, kHeight);
   gl::Texture mask(gl::Format::kRgba8, kWidth, kHeight);

@@ -30,45 +30,66 @@ uint look_up(int light, LightMap map, Receiver p) {
   return (at.depth - far_of(sees.y)) * cosine > at.reach * at.scale ? kShadowed : kOpen;
 }
 
-/// The masks of these pixels, the first of which is here; each has its bits in what it asks for.
-uvec4 seen_by(Receiver p0, Receiver p1, Receiver p2, Receiver p3, ivec2 first) {
+/// A quad of pixels, and their points.
+struct Receivers {
+  ivec2 at0, at1, at2, at3;  // in columns beyond the picture the last one
+  Receiver p0, p1, p2, p3;
+};
+
+Receivers receivers_of(ivec2 quad) {
+  ivec2 first = first_pixel_of(quad), last = textureSize(u_points, 0) - 1;
+  Receivers r;
+  r.at0 = min(first, last);
+  r.at1 = min(first + ivec2(1, 0), last);
+  r.at2 = min(first + ivec2(2, 0), last);
+  r.at3 = min(first + ivec2(3, 0), last);
+  r.p0 = receiver_at(r.at0);
+  r.p1 = receiver_at(r.at1);
+  r.p2 = receiver_at(r.at2);
+  r.p3 = receiver_at(r.at3);
+  return r;
+}
+
+/// Their masks; each has its bits in what it asks for.
+uvec4 seen_by(Receivers r) {
   begin_maps();
   begin_rays();
-  uvec2 told = texel_of(u_told, first / TILE).xy;
+  uvec2 told = texel_of(u_told, r.at0 / TILE).xy;
 #if ASKED
-  ivec2 last = textureSize(u_mask, 0) - 1;
-  uvec4 asked = uvec4(mask_of(texel_of(u_mask, min(first, last))),
-                      mask_of(texel_of(u_mask, min(first + ivec2(1, 0), last))),
-                      mask_of(texel_of(u_mask, min(first + ivec2(2, 0), last))),
-                      mask_of(texel_of(u_mask, min(first + ivec2(3, 0), last))));
+  uvec4 asked = uvec4(mask_of(texel_of(u_mask, r.at0)), mask_of(texel_of(u_mask, r.at1)),
+                      mask_of(texel_of(u_mask, r.at2)), mask_of(texel_of(u_mask, r.at3)));
 #else
   uvec4 asked = uvec4(told.x | told.y);
 #endif
   uvec4 seen = told.x & asked, open = uvec4(0u);
   uint unknown = told.y & (asked.x | asked.y | asked.z | asked.w);
-  do {
-    uint bit = lowest(unknown);
-    int light = number_of(bit);
-    LightMap map = map_of(light);
-    uvec4 answers = uvec4(look_up(light, map, p0), look_up(light, map, p1),
-                          look_up(light, map, p2), look_up(light, map, p3));
-    seen |= (answers & kSeen) * bit & asked;
-    open |= (answers & kOpen) / kOpen * bit & asked;
-    unknown ^= bit;
-  } while (unknown != 0u);
-  do {
-    uvec4 bits = uvec4(lowest(open.x), open.x == 0u ? lowest(open.y) : 0u, 0u, 0u);
-    if ((open.x | open.y) == 0u) {
-      bits.z = lowest(open.z);
-      if (open.z == 0u) bits.w = lowest(open.w);
-    }
-    Receiver p = p0;
-    if (bits.y != 0u) p = p1;
-    if (bits.z != 0u) p = p2;
-    if (bits.w != 0u) p = p3;
-    uint bit = bits.x | bits.y | bits.z | bits.w;
-    if (sees(number_of(bit), p)) seen |= bits;
-    open ^= bits;
-  } while (any(notEqual(open, uvec4(0u))));
+  if (unknown != 0u) {
+    do {
+      uint bit = lowest(unknown);
+      int light = number_of(bit);
+      LightMap map = map_of(light);
+      uvec4 answers = uvec4(look_up(light, map, r.p0), look_up(light, map, r.p1),
+                            look_up(light, map, r.p2), look_up(light, map, r.p3));
+      seen |= (answers & kSeen) * bit & asked;
+      open |= (answers & kOpen) / kOpen * bit & asked;
+      unknown ^= bit;
+    } while (unknown != 0u);
+  }
+  if (any(notEqual(open, uvec4(0u)))) {
+    do {
+      uvec4 bits = uvec4(lowest(open.x), open.x == 0u ? lowest(open.y) : 0u, 0u, 0u);
+      if ((open.x | open.y) == 0u) {
+        bits.z = lowest(open.z);
+        if (open.z == 0u) bits.w = lowest(open.w);
+      }
+      Receiver p = r.p0;
+      if (bits.y != 0u) p = r.p1;
+      if (bits.z != 0u) p = r.p2;
+      if (bits.w != 0u) p = r.p3;
+      uint bit = bits.x | bits.y | bits.z | bits.w;
+      if (sees(number_of(bit), p)) seen |= bits;
+      open ^= bits;
+    } while (any(notEqual(open, uvec4(0u))));
+  }
   return seen;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What encloses the points of each group of TILES_IN_GROUP x TILES_IN_GROUP tiles, and their normals:
-// see map_tiles.frag.glsl.
+// What encloses the points of each group of TILES_IN_GROUP x TILES_IN_GROUP tiles, and their
+// normals: see map_tiles.frag.glsl.
 #include "shaders/octahedral.glsl"
 #include "shaders/texel.glsl"
 

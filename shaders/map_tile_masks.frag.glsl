@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What maps tell of all points of a tile at once, or with GROUPS of a group of tiles: bit i of two
 // masks for light i.
+#include "shaders/bits.glsl"
 #include "shaders/shadow_maps.glsl"
 #include "shaders/texel.glsl"
-#include "shaders/triangles.glsl"
 
 uniform highp usampler2D u_spheres;  // see shaders/map_tiles.frag.glsl
 uniform highp usampler2D u_normals;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Adds the irradiance of up to 32 lights to what there is of four pixels of a row. A light is looked
-// up once for them, which on Mesa costs more than to shade one, and lights that none of them sees
-// are left out.
+// Adds the irradiance of up to 32 lights to what there is of four pixels of a row. A light is
+// looked up once for them, which on Mesa costs more than to shade one, and lights that none of them
+// sees are left out.
 #include "shaders/bits.glsl"
 #include "shaders/colour_quads_out.glsl"
 #include "shaders/lights.glsl"
@@ -11,9 +11,6 @@
 uniform highp usampler2D u_reflectances;
 uniform sampler2D u_red, u_green, u_blue;  // what there is
 uniform bool u_first_lights;               // there is nothing yet
-
-/// Pixels in columns beyond the picture are its last one.
-ivec2 inside(ivec2 pixel) { return min(pixel, textureSize(u_reflectances, 0) - 1); }
 
 vec3 shading_normal_at(ivec2 pixel) {
   return unpack_unit(texel_of(u_reflectances, pixel).w);
@@ -28,15 +25,17 @@ vec3 with_light(vec3 sum, Light light, Point p, uint bit, uint mask) {
 void shade(Point p0, Point p1, Point p2, Point p3, uvec4 mask) {
   vec3 sum0 = vec3(0.0), sum1 = vec3(0.0), sum2 = vec3(0.0), sum3 = vec3(0.0);
   uint left = mask.x | mask.y | mask.z | mask.w;
-  do {
-    uint bit = lowest(left);
-    Light light = u_lights[number_of(bit)];
-    sum0 = with_light(sum0, light, p0, bit, mask.x);
-    sum1 = with_light(sum1, light, p1, bit, mask.y);
-    sum2 = with_light(sum2, light, p2, bit, mask.z);
-    sum3 = with_light(sum3, light, p3, bit, mask.w);
-    left ^= bit;
-  } while (left != 0u);
+  if (left != 0u) {
+    do {
+      uint bit = lowest(left);
+      Light light = u_lights[number_of(bit)];
+      sum0 = with_light(sum0, light, p0, bit, mask.x);
+      sum1 = with_light(sum1, light, p1, bit, mask.y);
+      sum2 = with_light(sum2, light, p2, bit, mask.z);
+      sum3 = with_light(sum3, light, p3, bit, mask.w);
+      left ^= bit;
+    } while (left != 0u);
+  }
   o_red = vec4(sum0.r, sum1.r, sum2.r, sum3.r);
   o_green = vec4(sum0.g, sum1.g, sum2.g, sum3.g);
   o_blue = vec4(sum0.b, sum1.b, sum2.b, sum3.b);

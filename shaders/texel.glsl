@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A texel by its column and row, of a texture without mip levels that looks up the nearest one. For
 // texelFetch() Mesa finds size and place of a level for each pixel anew, which takes longer than the
-// texel itself.
+// texel itself. Beyond the texture is its edge.
 
 /// The same for all texels of a texture: loops find it before they begin, as Mesa does not.
 vec2 texel_size(sampler2D image) { return 1.0 / vec2(textureSize(image, 0)); }

@@ -614,6 +614,9 @@ TEST_F(CommandTest, TellsWhatTheStagesOfGlTake) {
   for (const auto& seconds : json["seconds_gpu"]) EXPECT_GE(seconds, 0.0);
   EXPECT_THAT(keys(stages({"--shadows", "interleaved"})["seconds_gpu"]),
               testing::Contains("filter"));
+  // Maps are asked where light is added.
+  EXPECT_THAT(keys(stages({"--shadows", "maps"})["seconds_gpu"]),
+              testing::UnorderedElementsAre("surfaces", "maps", "resolve"));
   // Rays have no stages of a GPU.
   const Outcome cpu = run(render("c.pfm", {"--json"}));
   EXPECT_FALSE(nlohmann::json::parse(cpu.out).contains("seconds_gpu"));

@@ -40,8 +40,11 @@ class Lighting {
   StageTimes& times_;
   GBuffer g_buffer_;
   // What all but the last maps tell is a mask; those are asked where light is added.
-  std::optional<LightMasks> masks_;
-  MaskPicture mask_;
+  struct Masks {
+    LightMasks of_lights;
+    MaskPicture picture;
+  };
+  std::optional<Masks> masks_;
   std::optional<MapTiles> last_maps_;
   MaskedShading shading_;
 };

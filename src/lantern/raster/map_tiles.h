@@ -25,9 +25,8 @@ class MapTiles {
   void look_at(const GBuffer& g_buffer);
   /// For the lights of this group, in the view's part. Draws their maps where they are not there.
   void ask(const LightGroup& group, const View& view, StageTimes& times);
-  /// What shaders/map_quads.glsl reads of that beside the points, on kUnits units from `unit` on.
+  /// What shaders/map_quads.glsl reads of that beside the points, on units from `unit` on.
   void set_in(const gl::Program& program, int unit) const;
-  static constexpr int kUnits = 6;
 
   /// Pixels a side of a tile.
   static constexpr int kTile = 4;

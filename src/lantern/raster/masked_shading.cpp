@@ -4,6 +4,7 @@
 #include "lantern/gl/check.h"
 
 #include <algorithm>
+#include <cassert>
 #include <span>
 #include <string>
 #include <utility>
@@ -15,11 +16,13 @@ constexpr GLuint kLightsBinding = 0;
 
 }  // namespace
 
-MaskedShading::MaskedShading(const gl::ShaderFiles& files, int width, int height, bool by_mask,
-                             bool by_maps)
-    : lights_(std::span<const LightRecord>()),
+MaskedShading::MaskedShading(const gl::ShaderFiles& files, int width, int height,
+                             Witnesses witnesses)
+    : witnesses_(witnesses),
+      lights_(std::span<const LightRecord>()),
       sums_{QuadTarget(QuadLayout{kTile, width, height}.size()),
             QuadTarget(QuadLayout{kTile, width, height}.size())} {
+  const bool by_mask = witnesses != Witnesses::kMaps, by_maps = witnesses != Witnesses::kMask;
   const char* shader =
       by_maps ? "shaders/shade_mapped.frag.glsl" : "shaders/shade_masked.frag.glsl";
   for (int formula = 0; formula < kLightFormulas; ++formula) {
@@ -31,6 +34,8 @@ MaskedShading::MaskedShading(const gl::ShaderFiles& files, int width, int height
 
 void MaskedShading::add(const LightGroup& group, const GBuffer& g_buffer, const SeenBy& seen,
                         bool is_first) {
+  assert((seen.mask != nullptr) == (witnesses_ != Witnesses::kMaps));
+  assert((seen.maps != nullptr) == (witnesses_ != Witnesses::kMask));
   std::array<LightRecord, kLightsInGroup> records;
   std::copy(group.records.begin(), group.records.end(), records.begin());
   lights_.write(std::span<const LightRecord>(records));

@@ -14,20 +14,22 @@
 
 namespace lantern {
 
-/// What says which lights a pixel sees; both must say so.
+/// What says which lights a pixel sees; both must say so, where there are both.
 struct SeenBy {
   const gl::Texture* mask = nullptr;  // bit i (RGBA8, the lowest byte in red): light i
   const MapTiles* maps = nullptr;     // that were asked for these lights
 };
 
+enum class Witnesses { kMask, kMaps, kBoth };
+
 class MaskedShading {
  public:
-  /// Of pictures of this size. Lights are seen by a mask, by maps, or by both.
-  MaskedShading(const gl::ShaderFiles& files, int width, int height, bool by_mask, bool by_maps);
+  /// Of pictures of this size.
+  MaskedShading(const gl::ShaderFiles& files, int width, int height, Witnesses witnesses);
 
   /// No light.
   void clear() { sums_[0].clear(); }
-  /// And what the lights give that are seen; before the first of them there is none.
+  /// And what the lights give that the witnesses see; before the first of them there is none.
   void add(const LightGroup& group, const GBuffer& g_buffer, const SeenBy& seen, bool is_first);
   /// In W/m².
   const QuadTarget& irradiance() const { return sums_[0]; }
@@ -36,6 +38,7 @@ class MaskedShading {
   static constexpr int kTile = MapTiles::kTile;
 
  private:
+  Witnesses witnesses_;
   std::vector<gl::Program> shade_;  // by formula
   gl::Buffer lights_;
   std::array<QuadTarget, 2> sums_;  // what there is, and that with a group of lights more

@@ -207,6 +207,7 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
       return !stop.load();
     });
     s.times.collect();
+    glFinish();  // what is told as done is
     if (volumes) {
       volumes->add(*s.volumes, point_of(lights, *options.show_volumes, s.world.coordinate_scale()),
                    s.view_of_sample(camera, n));

@@ -14,6 +14,7 @@
 #include <numeric>
 #include <span>
 #include <tuple>
+#include <utility>
 
 namespace lantern {
 namespace {
@@ -167,16 +168,16 @@ void Surfaces::set_view(const gl::Program& program, const View& view) const {
 /// What may be seen of a batch, those with the same sides that follow each other at once.
 void Surfaces::draw_bodies(const Batch& batch, const View& view) {
   const std::vector<Vec4> sides = sides_of(view);
-  std::vector<Body> bodies = batch.bodies;
-  std::erase_if(bodies, [&](const Body& body) { return !may_lie_inside(body, sides); });
+  std::vector<std::pair<float, const Body*>> seen;  // and how far they are
+  for (const Body& body : batch.bodies) {
+    if (!may_lie_inside(body, sides)) continue;
+    seen.emplace_back(glm::distance(body.centre, view.eye) - body.radius, &body);
+  }
   // The nearest first, so that little is drawn over, unless that takes too many calls.
   constexpr std::size_t kMostCalls = 256;
-  if (bodies.size() <= kMostCalls) {
-    const auto distance = [&](const Body& body) {
-      return glm::distance(body.centre, view.eye) - body.radius;
-    };
-    std::stable_sort(bodies.begin(), bodies.end(),
-                     [&](const Body& a, const Body& b) { return distance(a) < distance(b); });
+  if (seen.size() <= kMostCalls) {
+    std::stable_sort(seen.begin(), seen.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
   }
   GLint first = 0;
   GLsizei count = 0;
@@ -187,14 +188,14 @@ void Surfaces::draw_bodies(const Batch& batch, const View& view) {
     glDrawArrays(GL_TRIANGLES, first, count);
     count = 0;
   };
-  for (const Body& body : bodies) {
-    const SeenSide seen = seen_side(body, view.eye);
-    if (static_cast<GLint>(3 * body.first) != first + count || seen != side) {
+  for (const auto& [distance, body] : seen) {
+    const SeenSide its_side = seen_side(*body, view.eye);
+    if (static_cast<GLint>(3 * body->first) != first + count || its_side != side) {
       draw();
-      first = static_cast<GLint>(3 * body.first);
-      side = seen;
+      first = static_cast<GLint>(3 * body->first);
+      side = its_side;
     }
-    count += static_cast<GLsizei>(3 * body.count);
+    count += static_cast<GLsizei>(3 * body->count);
   }
   draw();
 }
