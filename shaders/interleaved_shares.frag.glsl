@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Adds the irradiance of a round's lights in the middles of flat tiles, four of a row a fragment.
 // Each light is seen as its share's pixels around say, those of the tile and of its neighbours.
+#include "shaders/colour_quads_out.glsl"
 #include "shaders/interleaved.glsl"
 #include "shaders/interleaved_masks.glsl"
 #include "shaders/octahedral.glsl"
@@ -11,9 +12,6 @@ uniform highp usampler2D u_joins;  // see shaders/interleaved_joins.frag.glsl
 uniform sampler2D u_red, u_green, u_blue, u_changes;  // what there is
 uniform bool u_first_round;                           // there is nothing yet
 
-layout(location = 0) out vec4 o_red;
-layout(location = 1) out vec4 o_green;
-layout(location = 2) out vec4 o_blue;
 // What the lights give, in sum of colours, of which the tile and its neighbour do not see the same.
 layout(location = 3) out vec4 o_changes;
 
@@ -84,9 +82,7 @@ void main() {
       } while (left != 0u);
     }
   } while (++share < TILE * TILE);
-  o_red = vec4(sum0.r, sum1.r, sum2.r, sum3.r);
-  o_green = vec4(sum0.g, sum1.g, sum2.g, sum3.g);
-  o_blue = vec4(sum0.b, sum1.b, sum2.b, sum3.b);
+  write_quad(sum0, sum1, sum2, sum3);
   o_changes = changes;
   if (u_first_round) return;
   o_red += texel_of(u_red, quad);

@@ -28,9 +28,7 @@ void main() {
   vec3 radiance1 = radiance_of(first + ivec2(1, 0), vec3(red.y, green.y, blue.y));
   vec3 radiance2 = radiance_of(first + ivec2(2, 0), vec3(red.z, green.z, blue.z));
   vec3 radiance3 = radiance_of(first + ivec2(3, 0), vec3(red.w, green.w, blue.w));
-  o_red = vec4(radiance0.r, radiance1.r, radiance2.r, radiance3.r);
-  o_green = vec4(radiance0.g, radiance1.g, radiance2.g, radiance3.g);
-  o_blue = vec4(radiance0.b, radiance1.b, radiance2.b, radiance3.b);
+  write_quad(radiance0, radiance1, radiance2, radiance3);
 #if ADD
   o_red += texel_of(u_red_before, quad);
   o_green += texel_of(u_green_before, quad);

@@ -36,9 +36,7 @@ void shade(Point p0, Point p1, Point p2, Point p3, uvec4 mask) {
       left ^= bit;
     } while (left != 0u);
   }
-  o_red = vec4(sum0.r, sum1.r, sum2.r, sum3.r);
-  o_green = vec4(sum0.g, sum1.g, sum2.g, sum3.g);
-  o_blue = vec4(sum0.b, sum1.b, sum2.b, sum3.b);
+  write_quad(sum0, sum1, sum2, sum3);
   if (u_first_lights) return;
   o_red += texel_of(u_red, ivec2(gl_FragCoord.xy));
   o_green += texel_of(u_green, ivec2(gl_FragCoord.xy));
