@@ -20,6 +20,7 @@ struct SeenBy {
   const MapTiles* maps = nullptr;     // that were asked for these lights
 };
 
+/// Which of these there are.
 enum class Witnesses { kMask, kMaps, kBoth };
 
 class MaskedShading {
@@ -34,7 +35,7 @@ class MaskedShading {
   /// In W/m².
   const QuadTarget& irradiance() const { return sums_[0]; }
 
-  /// Of the quads of pixels.
+  /// Of the QuadLayout.
   static constexpr int kTile = MapTiles::kTile;
 
  private:
