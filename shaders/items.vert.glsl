@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A triangle of the scene onto one face of a hemicube's item buffer.
 #include "shaders/texel.glsl"
+
 layout(location = 0) in vec3 position;
 layout(location = 1) in uint surface;  // the triangle's number times 2, and 1 if its back is alive
 

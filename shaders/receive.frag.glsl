@@ -2,6 +2,7 @@
 // What is gathered, scaled so that all of a shot's flux that is not lost arrives; to be added to what
 // was received before. TALLY: the flux that is lost instead.
 #include "shaders/texel.glsl"
+
 uniform sampler2D arrived;  // 1x1: flux, by the sum over the elements
 uniform sampler2D lost;     // 1x1: delta form factors, of all pixels and of those that lose light
 uniform vec3 flux;          // shot

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The sum over each block of 16x16 texels; WEIGHTED by the area of the elements.
 #include "shaders/texel.glsl"
+
 uniform sampler2D values;
 #ifdef WEIGHTED
 uniform sampler2D normals;  // w: exposed area

@@ -2,6 +2,7 @@
 // Bilinear look-ups as lantern/scene/texture.h has them: texel centres at (i + 0.5) / width, sRGB
 // decoded before the filter. Hardware filters round their weights.
 #include "shaders/texel.glsl"
+
 const int kRepeat = 0;
 const int kClamp = 1;
 const int kMirror = 2;

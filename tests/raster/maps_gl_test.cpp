@@ -151,7 +151,8 @@ TEST_P(MapsTest, Balls) {
 TEST_P(MapsTest, BallsInMapsOfFewTriangles) {
   const test::RasterStage stage(test::room_of_balls(16, 16));
   const Difference d = compare(stage, 4, 2, {.size = 256});
-  EXPECT_LT(d.share(d.leaks), 2.5 * kSlender);
+  // Texels are half as wide again as in Balls, and more is slender to them: 0.24 %.
+  EXPECT_LT(d.share(d.leaks), 1.5 * kSlender);
   EXPECT_LT(d.share(d.lost), kRounding);
 }
 
