@@ -35,22 +35,23 @@ struct Question {
   vec3 way;
   float reach;      // see MapPoint
   uvec4 triangles;  // what the four texels around see that may be in the way
-  uvec4 left;       // of these
+  uvec4 edges;      // whose edges are there before that
+  uvec4 left, edges_left;  // of these
   uint nearest;     // what the one sees in which the point is
   uint next, last;  // the triangle beyond an edge of the last one, which is asked first, unless 0
   int steps;        // that it is away from a texel's
 };
 
-const int kMostSteps = 2;
+// Mouldings are so many strips; few rays go that far before they pass by a rim.
+const int kMostSteps = 8;
 
-/// What a texel sees, 0 for what is not in the way of any light.
-uint seen_in(ivec2 corner, ivec2 texel, bool is_nearest, Receiver p) {
-  uint seen = texel_of(u_map_numbers, number_texel, corner + wrapped_texel(texel)).x;
-  seen &= kNumber | kHoles;
-  bool is_own = (seen & kNumber) - p.first < p.count;
+/// What a texel sees and whose edge, 0 for what is not in the way of any light.
+uvec2 seen_in(ivec2 corner, ivec2 texel, bool is_nearest, Receiver p) {
+  uvec2 seen = texel_of(u_map_numbers, number_texel, corner + wrapped_texel(texel)).xy;
+  bvec2 is_own = lessThan((seen & kNumber) - p.first, uvec2(p.count));
   // What has holes stops what goes through this very texel.
-  bool is_other_texel = (seen & kHoles) != 0u && !is_nearest;
-  return is_own || is_other_texel ? 0u : seen;
+  bool is_other_texel = (seen.x & kHoles) != 0u && !is_nearest;
+  return uvec2(is_own.x || is_other_texel ? 0u : seen.x, is_own.y ? 0u : seen.y);
 }
 
 Question question_for(int light, Receiver p) {
@@ -62,24 +63,49 @@ Question question_for(int light, Receiver p) {
   ivec2 first = block_of(at.texel), corner = corner_of_map(light);
   ivec2 off = clamp(ivec2(floor(at.texel)) - first, 0, 1);
   int nearest = off.x + 2 * off.y;
-  uvec4 seen;
-  seen.x = seen_in(corner, first, nearest == 0, p);
-  seen.y = seen_in(corner, first + ivec2(1, 0), nearest == 1, p);
-  seen.z = seen_in(corner, first + ivec2(0, 1), nearest == 2, p);
-  seen.w = seen_in(corner, first + ivec2(1, 1), nearest == 3, p);
+  uvec2 seen_x = seen_in(corner, first, nearest == 0, p);
+  uvec2 seen_y = seen_in(corner, first + ivec2(1, 0), nearest == 1, p);
+  uvec2 seen_z = seen_in(corner, first + ivec2(0, 1), nearest == 2, p);
+  uvec2 seen_w = seen_in(corner, first + ivec2(1, 1), nearest == 3, p);
+  uvec4 seen = uvec4(seen_x.x, seen_y.x, seen_z.x, seen_w.x);
+  uvec4 edges = uvec4(seen_x.y, seen_y.y, seen_z.y, seen_w.y);
   asked.nearest = nearest == 0 ? seen.x : nearest == 1 ? seen.y : nearest == 2 ? seen.z : seen.w;
   // Each once.
   if (seen.y == seen.x) seen.y = 0u;
   if (seen.z == seen.x || seen.z == seen.y) seen.z = 0u;
   if (seen.w == seen.x || seen.w == seen.y || seen.w == seen.z) seen.w = 0u;
+  if (any(equal(uvec4(edges.x), seen))) edges.x = 0u;
+  if (edges.y == edges.x || any(equal(uvec4(edges.y), seen))) edges.y = 0u;
+  if (edges.z == edges.x || edges.z == edges.y || any(equal(uvec4(edges.z), seen))) edges.z = 0u;
+  if (any(equal(uvec3(edges.w), edges.xyz)) || any(equal(uvec4(edges.w), seen))) edges.w = 0u;
   asked.triangles = asked.left = seen;
+  asked.edges = asked.edges_left = edges;
   asked.next = 0u;
   return asked;
 }
 
 bool is_answered(Question open) {
-  uvec4 left = open.left;
+  uvec4 left = open.left | open.edges_left;
   return (left.x | left.y | left.z | left.w | open.next) == 0u;
+}
+
+/// One that is not 0, if any is, which is so from now on.
+uint taken(inout uvec4 left) {
+  uint one = 0u;
+  if (left.x != 0u) {
+    one = left.x;
+    left.x = 0u;
+  } else if (left.y != 0u) {
+    one = left.y;
+    left.y = 0u;
+  } else if (left.z != 0u) {
+    one = left.z;
+    left.z = 0u;
+  } else {
+    one = left.w;
+    left.w = 0u;
+  }
+  return one;
 }
 
 /// The next of the triangles that may be in the way.
@@ -92,21 +118,8 @@ uint next_of(inout Question open) {
   }
   open.steps = 0;
   open.last = 0u;
-  uvec4 left = open.left;
-  if (left.x != 0u) {
-    open.left.x = 0u;
-    return left.x;
-  }
-  if (left.y != 0u) {
-    open.left.y = 0u;
-    return left.y;
-  }
-  if (left.z != 0u) {
-    open.left.z = 0u;
-    return left.z;
-  }
-  open.left.w = 0u;
-  return left.w;
+  uint one = taken(open.left);
+  return one != 0u ? one : taken(open.edges_left);
 }
 
 /// Whether the next triangle is in the way. [Möller & Trumbore 1997] Behind the edge that the ray
@@ -128,16 +141,10 @@ bool is_in_way(inout Question open, Receiver p) {
   float least = min(v_of_a, min(v_of_b, v_of_c));
   bool is_before = t > 0.0 && (KIND == 2 || t < 1.0);
   if (is_before && least >= -kSeam) return true;
-  if (open.steps == 0 && seen == open.nearest) {
-    // A triangle that is more slender than a texel stands for all that is like it around: it stops
-    // what goes through its texel, and so does one with holes.
-    vec3 bc = ac - ab, doubled_area = cross(ab, ac);
-    float longest = max(dot(ab, ab), max(dot(ac, ac), dot(bc, bc)));
-    float texel = 0.25 * open.reach;
-    bool is_slender = dot(doubled_area, doubled_area) < texel * texel * longest;
+  if (open.steps == 0 && seen == open.nearest && (seen & kHoles) != 0u) {
+    // It stops what goes through its texel.
     float slope = dot(way, way) / max(dot(p.geometric, way), 1e-6);
-    bool is_far = -dot(from_a, way) > open.reach * slope;
-    if (is_far && (is_slender || (seen & kHoles) != 0u)) return true;
+    if (-dot(from_a, way) > open.reach * slope) return true;
   }
   bool may_step = is_before && open.steps < kMostSteps && volume != 0.0 && (seen & kHoles) == 0u;
   if (!may_step) return false;
@@ -146,7 +153,8 @@ bool is_in_way(inout Question open, Receiver p) {
   if (open.steps > 0 && to_last < 0.0) return false;
   // The texels' triangles are asked anyhow.
   uint next = uint(least == v_of_a ? b.w : least == v_of_b ? c.w : a.w);
-  bool is_asked = any(equal(open.triangles, uvec4(next))), is_own = next - p.first < p.count;
+  bool is_asked = any(equal(open.triangles, uvec4(next))) || any(equal(open.edges, uvec4(next)));
+  bool is_own = next - p.first < p.count;
   open.next = is_asked || is_own ? 0u : next;
   open.last = number;
   return false;

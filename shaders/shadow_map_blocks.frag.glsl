@@ -4,6 +4,7 @@
 #include "shaders/texel.glsl"
 
 uniform highp usampler2D u_texels;  // of this map alone
+uniform highp usampler2D u_edge_texels;
 uniform ivec2 u_first;  // where it will be
 
 layout(location = 0) out uvec4 o_block;
@@ -11,16 +12,15 @@ layout(location = 1) out uvec4 o_number;
 
 void main() {
   ivec2 in_map = ivec2(gl_FragCoord.xy) - u_first;
-  uvec3 seen[4];  // number, depth, patch
-  for (int i = 0; i < 4; ++i) {
-    ivec2 texel = min(in_map + ivec2(i & 1, i >> 1), ivec2(u_map_size - 1));
-    seen[i] = texel_of(u_texels, texel).xyz;
+  uvec3 seen[8];  // number, depth, patch: of texels, then of edges
+  uint nearest = 0xffffffffu, far = 0u, first = 0u;
+  for (int i = 0; i < 8; ++i) {
+    ivec2 texel = min(in_map + ivec2(i & 1, i >> 1 & 1), ivec2(u_map_size - 1));
+    seen[i] = i < 4 ? texel_of(u_texels, texel).xyz : texel_of(u_edge_texels, texel).xyz;
     if (seen[i].x == 0u) seen[i].yz = uvec2(kInfinitelyFar << 16, 0u);
-  }
-  uint nearest = seen[0].y, far = 0u, first = seen[0].z;
-  for (int i = 0; i < 4; ++i) {
     bool has_holes = (seen[i].x & kHoles) != 0u;
-    far = max(far, has_holes ? kInfinitelyFar << 16 : seen[i].y);  // floats' bits are in their order
+    // Floats' bits are in their order. An edge hides no texel.
+    if (i < 4) far = max(far, has_holes ? kInfinitelyFar << 16 : seen[i].y);
     if (has_holes) seen[i].yz = uvec2(0u, kNoPatch);
     if (seen[i].y < nearest) {
       nearest = seen[i].y;
@@ -28,9 +28,9 @@ void main() {
     }
   }
   uint beyond = kInfinitelyFar << 16;
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 8; ++i) {
     if (seen[i].z != first) beyond = min(beyond, seen[i].y);
   }
   o_block = uvec4(first, (beyond & 0xffff0000u) | ((far + 0xffffu) >> 16), 0u, 0u);
-  o_number = uvec4(seen[0].x, 0u, 0u, 0u);
+  o_number = uvec4(seen[0].x, seen[4].x, 0u, 0u);
 }

@@ -260,14 +260,28 @@ TEST(Pictures, InterleavedTakesManyLightsOfEveryKind) {
   EXPECT_NEAR(comparison.mean_a.g / comparison.mean_b.g, 1.0, 0.002);
 }
 
-/// The nave of sibenik.mesh under the sky; none where the shared folder is not there.
-std::optional<Scene> nave_under_the_sky(RenderOptions& options) {
+/// The nave of sibenik.mesh; none where the shared folder is not there.
+std::optional<Scene> nave(RenderOptions& options) {
   const auto folder = test::shared_folder("scenes/ogre");
   if (!folder) return std::nullopt;
-  Scene scene = load_scene(*folder / "sibenik.mesh").scene;
-  scene.sky = Sky{};
   options.camera.eye = Vec3(12.0f, 3.0f, 0.0f);
   options.camera.target = Vec3(-20.0f, 7.0f, 0.0f);
+  return load_scene(*folder / "sibenik.mesh").scene;
+}
+
+std::optional<Scene> nave_under_the_sky(RenderOptions& options) {
+  std::optional<Scene> scene = nave(options);
+  if (scene) scene->sky = Sky{};
+  return scene;
+}
+
+/// Its stained glass shines.
+std::optional<Scene> nave_by_its_windows(RenderOptions& options) {
+  std::optional<Scene> scene = nave(options);
+  if (!scene) return std::nullopt;
+  for (Material& material : scene->materials) {
+    if (material.name.find("staklo") != std::string::npos) material.emission = Rgb(20.0f);
+  }
   return scene;
 }
 
@@ -284,8 +298,8 @@ TEST(Pictures, InterleavedLeavesAChurchDarkThatTheSkyLightsThroughItsWindows) {
   EXPECT_NEAR(comparison.mean_a.g / comparison.mean_b.g, 1.0, 0.1);
 }
 
-/// What maps miss is more slender than a texel, a fiftieth of a radian, and not next to a triangle
-/// that a texel sees.
+/// What maps miss stands behind something that is more slender than a texel, a fiftieth of a
+/// radian.
 TEST(Pictures, MapsComeClose) {
   struct Case {
     Scene scene;
@@ -293,8 +307,8 @@ TEST(Pictures, MapsComeClose) {
     double mean;
   };
   const std::vector<Case> cases = {{test::own_scene("cornell_box.scene"), 140, 0.0005},
-                                   {test::own_scene("two_rooms.scene"), 140, 0.001},
-                                   {test::room_of_balls(16, 16), 32, 0.004},
+                                   {test::own_scene("two_rooms.scene"), 140, 0.0005},
+                                   {test::room_of_balls(16, 16), 32, 0.0005},
                                    {exhibition(), 96, 0.0005}};
   for (const Case& tested : cases) {
     RenderOptions options = small(tested.paths);
@@ -313,7 +327,18 @@ TEST(Pictures, MapsComeCloseInsideSibenikUnderTheSky) {
   if (!scene) GTEST_SKIP() << "the shared folder scenes/ogre is not there";
   const Image exact = picture(*scene, options, Backend::kGl);
   options.shadows = ShadowMethod::kMaps;
-  EXPECT_LT(mean_difference(picture(*scene, options, Backend::kGl), exact), 0.01);
+  EXPECT_LT(mean_difference(picture(*scene, options, Backend::kGl), exact), 0.005);
+}
+
+/// Capitals and rails are of strips that are more slender than a texel: rays find them by their
+/// edges and by going from one to the next.
+TEST(Pictures, MapsComeCloseInsideSibenikByItsWindows) {
+  RenderOptions options = small(24);
+  const std::optional<Scene> scene = nave_by_its_windows(options);
+  if (!scene) GTEST_SKIP() << "the shared folder scenes/ogre is not there";
+  const Image exact = picture(*scene, options, Backend::kGl);
+  options.shadows = ShadowMethod::kMaps;
+  EXPECT_LT(mean_difference(picture(*scene, options, Backend::kGl), exact), 0.007);
 }
 
 TEST(Pictures, MapsAreDrawnTheSameEveryTime) {

@@ -19,8 +19,8 @@
 namespace lantern {
 namespace {
 
-// A number, what a block sees and, in half as many texels again, windows.
-constexpr std::size_t kTexelBytes = 4 * sizeof(std::uint32_t);
+// Two numbers, what a block sees and, in half as many texels again, windows.
+constexpr std::size_t kTexelBytes = 5 * sizeof(std::uint32_t);
 constexpr int kMapsAcross = 4;  // as in shaders/shadow_maps.glsl
 constexpr int kMapLevels = 6;   // as in shaders/shadow_map.glsl
 
@@ -50,6 +50,34 @@ int rows_of(const LightGroup& group) {
   return (static_cast<int>(group.records.size()) - 1) / kMapsAcross + 1;
 }
 
+/// What is not as wide as this many texels may lie between them all. (Of a triangle find_widths()
+/// tells half its height.)
+constexpr float kSlender = 3.0f;
+
+/// The least width that texels do not miss where the cluster is furthest from the light.
+float slender_at(const MapFace& face, const Cluster& cluster) {
+  const Mat4 rows = glm::transpose(face.clip);
+  const float w = glm::dot(Vec3(rows[3]), cluster.centre - face.origin) + rows[3].w;
+  const float x = glm::length(Vec3(rows[0])) * static_cast<float>(face.width);
+  const float most = w + cluster.radius * glm::length(Vec3(rows[3]));
+  return kSlender * 2.0f * most / x;
+}
+
+/// So that edges lie behind the triangles that they are of.
+std::vector<MapFace> behind(std::vector<MapFace> faces, ClipRange range) {
+  constexpr float kBehind = 0x1p-10f;
+  for (MapFace& face : faces) {
+    Mat4 rows = glm::transpose(face.clip);
+    if (range == ClipRange::kFarIs0) {
+      rows[2] *= 1.0f - kBehind;
+    } else {
+      rows[2] += kBehind * (rows[3] - rows[2]);
+    }
+    face.clip = glm::transpose(rows);
+  }
+  return faces;
+}
+
 /// A row for each.
 gl::Texture frame_texture(std::span<const MapFrame> frames) {
   std::vector<float> channels;
@@ -67,8 +95,10 @@ gl::Texture frame_texture(std::span<const MapFrame> frames) {
 
 ShadowMaps::Unfinished::Unfinished(int size)
     : texels(gl::Format::kRgba32ui, size, size),
+      edges(gl::Format::kRgba32ui, size, size),
       depth(gl::Format::kDepth32f, size, size),
-      framebuffer({&texels}, &depth) {}
+      framebuffer({&texels}, &depth),
+      edge_framebuffer({&edges}, &depth) {}
 
 ShadowMaps::Casters ShadowMaps::casters_of(const Scene& scene, const World& world,
                                            MapCasters which) {
@@ -123,6 +153,7 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
       indices_(std::span<const std::uint32_t>()),
       array_({}, &indices_) {
   assert(size_ % 128 == 0);
+  find_widths(world);
   attributes_.reserve(5);
   const auto add = [&](gl::Buffer buffer, GLuint location, int channels, bool integer = false) {
     attributes_.push_back(std::move(buffer));
@@ -144,6 +175,32 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
     add(by_corner(world, casters_.order, world.texcoords), kTexcoord, 2);
   }
   if (!world.colours.empty()) add(by_corner(world, casters_.order, world.colours), kColour, 4);
+}
+
+/// Of the most slender patch of each cluster, by its area and its length.
+void ShadowMaps::find_widths(const World& world) {
+  const ConvexPatches& patches = triangles_.patches;
+  std::vector<float> widths;
+  for (const ConvexPatches::Patch& patch : patches.patches) {
+    float area = 0.0f;
+    Bounds bounds;
+    for (const std::uint32_t t : std::span(patches.order).subspan(patch.first, patch.count)) {
+      area += world.area(t);
+      for (int corner = 0; corner < 3; ++corner) {
+        bounds.add(world.positions[world.triangles[t][corner]]);
+      }
+    }
+    widths.push_back(area / std::max(2.0f * bounds.radius(), 1e-30f));
+  }
+  for (Batch& batch : casters_.batches) {
+    for (const Cluster& cluster : batch.clusters) {
+      float least = kInfinity;
+      for (std::uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
+        least = std::min(least, widths[patches.patch_of[casters_.order[i]]]);
+      }
+      batch.widths.push_back(least);
+    }
+  }
 }
 
 int ShadowMaps::size_of(LightFormula formula) const {
@@ -197,7 +254,7 @@ void ShadowMaps::draw(const LightGroup& group, const Bounds& receivers, StageTim
   kept_.push_back({group.formula, group.records, group.points, box, std::move(frames),
                    std::move(frame_texels),
                    gl::Texture(gl::Format::kRg32ui, width + width / 2, height),
-                   gl::Texture(gl::Format::kR32ui, width, height)});
+                   gl::Texture(gl::Format::kRg32ui, width, height)});
   times.begin(Stage::kMaps);
   draw(kept_.back());
   times.end();
@@ -207,22 +264,15 @@ void ShadowMaps::draw(const Maps& maps) {
   const int size = size_of(maps.formula);
   const Unfinished& unfinished = unfinished_.try_emplace(size, size).first->second;
   const gl::Framebuffer finished({&maps.blocks, &maps.numbers});
-  View view{};
-  view.near_is_1 = options_.range == ClipRange::kFarIs0;
   for (std::size_t light = 0; light < maps.frames.size(); ++light) {
-    unfinished.framebuffer.bind();
-    apply({.depth = DepthUse::kDraw}, view);
-    const GLuint nothing[4] = {};
-    glClearBufferuiv(GL_COLOR, 0, nothing);
-    const float far = far_depth(view);
-    glClearBufferfv(GL_DEPTH, 0, &far);
-    draw_light(maps, light);
+    draw_light(maps, light, unfinished);
     reset_draw_state();
     finished.bind();
     const int place = static_cast<int>(light);
     const glm::ivec2 first = size * glm::ivec2(place % kMapsAcross, place / kMapsAcross);
     glViewport(first.x, first.y, size, size);
     blocks_.set("u_texels", 0, unfinished.texels);
+    blocks_.set("u_edge_texels", 1, unfinished.edges);
     blocks_.set("u_map_size", size);
     blocks_.set("u_first", first);
     gl::draw_full_screen(no_vertices_);
@@ -251,32 +301,47 @@ void ShadowMaps::draw_windows(const Maps& maps) {
   }
 }
 
-void ShadowMaps::draw_light(const Maps& maps, std::size_t light) {
-  const int size = size_of(maps.formula);
+void ShadowMaps::draw_light(const Maps& maps, std::size_t light, const Unfinished& unfinished) {
   const std::vector<MapFace> faces =
-      map_faces(maps.frames[light], maps.formula, bounds_, size, options_.range);
-  std::vector<std::uint32_t> indices;
-  std::vector<std::size_t> ends;  // of each face's part of each batch
+      map_faces(maps.frames[light], maps.formula, bounds_, size_of(maps.formula), options_.range);
+  Drawn triangles, edges;
   for (const Batch& batch : casters_.batches) {
     const bool none = batch.wall && is_inside(std::span(&*batch.wall, 1), maps.points[light]);
     for (const MapFace& face : faces) {
-      if (none) {
-        ends.push_back(indices.size());
-        continue;
-      }
-      for (const Cluster& cluster : batch.clusters) {
+      for (std::size_t i = 0; i < batch.clusters.size() && !none; ++i) {
+        const Cluster& cluster = batch.clusters[i];
         if (!may_lie_inside(cluster, face.origin, face.planes)) continue;
-        const std::size_t first = indices.size();
-        indices.resize(first + 3 * cluster.count);
-        std::iota(indices.begin() + static_cast<std::ptrdiff_t>(first), indices.end(),
-                  3 * cluster.first);
+        const std::uint32_t end = 3 * (cluster.first + cluster.count);
+        for (std::uint32_t v = 3 * cluster.first; v < end; ++v) triangles.indices.push_back(v);
+        if (batch.material_with_holes || batch.widths[i] > slender_at(face, cluster)) continue;
+        for (std::uint32_t v = 3 * cluster.first; v < end; v += 3) {
+          edges.indices.insert(edges.indices.end(), {v, v + 1, v + 1, v + 2, v + 2, v});
+        }
       }
-      ends.push_back(indices.size());
+      triangles.ends.push_back(triangles.indices.size());
+      edges.ends.push_back(edges.indices.size());
     }
   }
-  indices_.write(std::span<const std::uint32_t>(indices));
+  View view{};
+  view.near_is_1 = options_.range == ClipRange::kFarIs0;
+  const GLuint nothing[4] = {};
   array_.bind();
   glVertexAttrib4f(kColour, 1.0f, 1.0f, 1.0f, 1.0f);
+  unfinished.framebuffer.bind();
+  apply({.depth = DepthUse::kDraw}, view);
+  glClearBufferuiv(GL_COLOR, 0, nothing);
+  const float far = far_depth(view);
+  glClearBufferfv(GL_DEPTH, 0, &far);
+  draw_batches(maps, light, faces, triangles, GL_TRIANGLES);
+  unfinished.edge_framebuffer.bind();
+  glClearBufferuiv(GL_COLOR, 0, nothing);
+  if (!edges.indices.empty())
+    draw_batches(maps, light, behind(faces, options_.range), edges, GL_LINES);
+}
+
+void ShadowMaps::draw_batches(const Maps& maps, std::size_t light, std::span<const MapFace> faces,
+                              const Drawn& drawn, GLenum mode) {
+  indices_.write(std::span<const std::uint32_t>(drawn.indices));
   std::size_t first = 0, part = 0;
   for (const Batch& batch : casters_.batches) {
     const gl::Program& program = batch.material_with_holes ? with_holes_ : solid_;
@@ -284,16 +349,17 @@ void ShadowMaps::draw_light(const Maps& maps, std::size_t light) {
       surfaces_.set_opacity(program, *batch.material_with_holes, 0);
       program.set("u_seed", seed_of(maps.frames[light]));
     }
-    program.set("u_map_size", size);
+    program.set("u_map_size", size_of(maps.formula));
     for (const MapFace& face : faces) {
+      const std::size_t end = drawn.ends[part++];
+      if (end == first) continue;
       program.set("u_origin", face.origin);
       program.set("u_edges[0]", face.edges[0]);
       program.set("u_edges[1]", face.edges[1]);
       program.set("u_clip", face.clip);
       program.set("u_depth", face.depth);
       glViewport(face.x, face.y, face.width, face.height);
-      const std::size_t end = ends[part++];
-      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(end - first), GL_UNSIGNED_INT,
+      glDrawElements(mode, static_cast<GLsizei>(end - first), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(first * sizeof(std::uint32_t)));
       first = end;
     }
