@@ -107,6 +107,8 @@ std::vector<OurWay> our_ways() {
   size.height = kHeight;
   std::vector<OurWay> ways = {{"stencil", size}, {"interleaved", size}, {"maps", size}};
   ways[1].options.tile = 4;
+  ways[1].options.shadows = ShadowMethod::kCheaper;
+  ways[1].options.samples_of_lights = 100;  // of a walk through the scene
   ways[2].options.shadows = ShadowMethod::kMaps;
   return ways;
 }

@@ -39,7 +39,10 @@ FrameRun frame_run(const Arguments& arguments, const std::string& shadows, Frame
   std::tie(run.options.width, run.options.height) = parse_size(arguments.size);
   run.options.camera = arguments.camera.choice();
   run.options.backend = Backend::kGl;
-  if (shadows == "interleaved") run.options.tile = arguments.tile;
+  if (shadows == "interleaved") {
+    run.options.tile = arguments.tile;
+    run.options.shadows = ShadowMethod::kCheaper;
+  }
   if (shadows == "maps") run.options.shadows = ShadowMethod::kMaps;
   if (arguments.gl_device >= 0) run.options.gl_device = arguments.gl_device;
   return run;

@@ -94,7 +94,10 @@ void add_instant_radiosity(const Arguments& arguments, RenderOptions& options) {
       arguments.bound.value_or(arguments.compensate ? kUsualBoundCompensated : kUsualBound);
   options.compensate = arguments.compensate;
   options.shadow_rays = arguments.single_rays ? ShadowRays::kSingle : ShadowRays::kPackets;
-  if (arguments.shadows == "interleaved") options.tile = arguments.tile;
+  if (arguments.shadows == "interleaved") {
+    options.tile = arguments.tile;
+    options.shadows = ShadowMethod::kCheaper;
+  }
   if (arguments.shadows == "maps") options.shadows = ShadowMethod::kMaps;
   options.volumes = arguments.volumes == "z-pass"   ? VolumeMethod::kZPass
                     : arguments.volumes == "z-fail" ? VolumeMethod::kZFail

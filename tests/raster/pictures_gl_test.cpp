@@ -247,6 +247,24 @@ TEST(Pictures, InterleavedComesClose) {
   }
 }
 
+/// What is likely to take less time is as close: where silhouettes are drawn for many samples,
+/// maps.
+TEST(Pictures, InterleavedByMapsComesClose) {
+  const Scene scene = test::room_of_balls(12, 12);
+  RenderOptions options = small(140);
+  options.width = 250;
+  options.height = 190;
+  const Image all = picture(scene, options, Backend::kGl);
+  options.tile = 4;
+  const Image by_volumes = picture(scene, options, Backend::kGl);
+  options.shadows = ShadowMethod::kMaps;
+  const Image by_maps = picture(scene, options, Backend::kGl);
+  EXPECT_LT(mean_difference(by_maps, all), 0.02);
+  EXPECT_LT(mean_difference(by_maps, by_volumes), 0.005);
+  options.shadows = ShadowMethod::kCheaper;
+  EXPECT_EQ(picture(scene, options, Backend::kGl).pixels, by_volumes.pixels);
+}
+
 /// More than one group of 32 for each share, of all formulas, and more than one block of them.
 /// Edges of shadows are off: 0.8 %, the mean 0.1 %.
 TEST(Pictures, InterleavedTakesManyLightsOfEveryKind) {

@@ -11,6 +11,12 @@
 #include <algorithm>
 
 namespace lantern {
+namespace {
+
+/// Who walks through a scene sees the same lights for seconds at least.
+constexpr std::size_t kFramesOfLights = 100;
+
+}  // namespace
 
 FramePoint measure_frames(const Scene& scene, const FrameRun& run, const VirtualLights& lights,
                           double seconds, const StopFlag& stop) {
@@ -21,7 +27,9 @@ FramePoint measure_frames(const Scene& scene, const FrameRun& run, const Virtual
                     static_cast<float>(options.width) / static_cast<float>(options.height));
   const World world = subdivided(given, run.pieces);
   const gl::Context context({.api = {}, .device = options.gl_device});
-  Rasteriser rasteriser(scene, world, context.info(), raster_options(options));
+  RasterOptions with = raster_options(options);
+  with.samples_of_lights = kFramesOfLights;
+  Rasteriser rasteriser(scene, world, context.info(), with);
   gl::Timer timer;
   rasteriser.draw_frame(camera, lights, {}, 0);
   glFinish();

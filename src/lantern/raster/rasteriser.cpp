@@ -4,6 +4,7 @@
 #include "lantern/core/error.h"
 #include "lantern/gl/check.h"
 #include "lantern/gl/program.h"
+#include "lantern/raster/cheaper_shadows.h"
 #include "lantern/raster/colour_quads.h"
 #include "lantern/raster/interleaving.h"
 #include "lantern/raster/light_shares.h"
@@ -42,6 +43,16 @@ std::optional<World> solid_part(const Scene& scene, const World& world) {
 /// The way that is asked for or, where depth clamp is missing, the other exact one.
 VolumeMethod method(VolumeMethod asked, const gl::Info& gl) {
   return asked == VolumeMethod::kExact && !gl.has(gl::kDepthClamp) ? VolumeMethod::kZFail : asked;
+}
+
+/// kVolumes or kMaps.
+ShadowMethod shadow_method(const RasterOptions& options, const World& world, const World& casters) {
+  if (options.shadows != ShadowMethod::kCheaper) return options.shadows;
+  // Who studies volumes wants them.
+  if (options.show_volumes || options.volumes != VolumeMethod::kExact) {
+    return ShadowMethod::kVolumes;
+  }
+  return cheaper_shadows(world, casters, options.samples_of_lights);
 }
 
 /// Where light number `i` is.
@@ -87,15 +98,16 @@ struct Rasteriser::State {
         resolve(resolve_program(false)),
         resolve_and_add(resolve_program(true)),
         radiance{QuadTarget(quads().size()), QuadTarget(quads().size())} {
-    const bool by_maps = with.shadows == ShadowMethod::kMaps;
     const bool none_solid = solid && solid->triangles.empty();
+    const bool by_maps =
+        !none_solid && shadow_method(with, all, solid ? *solid : all) == ShadowMethod::kMaps;
     if (!by_maps && !none_solid) {
       volumes.emplace(all, files, method(with.volumes, gl), solid ? &*solid : nullptr);
     }
     Shadows shadows{.volumes = volumes ? &*volumes : nullptr};
     // What has holes would hide in maps what is behind it; volumes know triangles alone.
     for (const MapCasters casters : {MapCasters::kSolid, MapCasters::kWithHoles}) {
-      if (casters == MapCasters::kSolid ? !by_maps || none_solid : !solid) continue;
+      if (casters == MapCasters::kSolid ? !by_maps : !solid) continue;
       maps.emplace_back(scene, all, surfaces, files,
                         ShadowMapOptions{.range = view_options.range, .casters = casters});
       shadows.maps.push_back(&maps.back());
