@@ -2,6 +2,7 @@
 // Where maps leave it open which lights a pixel sees, the rays to them are met with the triangles
 // that the four texels around name: edges of shadows are those of triangles, not of texels. [Lecocq
 // et al. 2014, Sub-pixel Shadow Mapping]
+#include "shaders/hash.glsl"
 #include "shaders/map_receivers.glsl"
 #include "shaders/shadow_maps.glsl"
 #include "shaders/texel.glsl"
@@ -37,7 +38,6 @@ struct Question {
   uvec4 triangles;  // what the four texels around see that may be in the way
   uvec4 edges;      // whose edges are there before that
   uvec4 left, edges_left;  // of these
-  uint nearest;     // what the one sees in which the point is
   uint next, last;  // the triangle beyond an edge of the last one, which is asked first, unless 0
   int steps;        // that it is away from a texel's
 };
@@ -45,13 +45,16 @@ struct Question {
 // Mouldings are so many strips; few rays go that far before they pass by a rim.
 const int kMostSteps = 8;
 
-/// What a texel sees and whose edge, 0 for what is not in the way of any light.
+/// What a texel sees, and whose edge or what behind a veil; 0 for what is not in the way of any
+/// light.
 uvec2 seen_in(ivec2 corner, ivec2 texel, bool is_nearest, Receiver p) {
   uvec2 seen = texel_of(u_map_numbers, number_texel, corner + wrapped_texel(texel)).xy;
   bvec2 is_own = lessThan((seen & kNumber) - p.first, uvec2(p.count));
   // What has holes stops what goes through this very texel.
-  bool is_other_texel = (seen.x & kHoles) != 0u && !is_nearest;
-  return uvec2(is_own.x || is_other_texel ? 0u : seen.x, is_own.y ? 0u : seen.y);
+  bvec2 is_of_texel = equal(seen & (kHoles | kVeil), uvec2(kHoles));
+  if (is_own.x || (is_of_texel.x && !is_nearest)) seen.x = 0u;
+  if (is_own.y || (is_of_texel.y && !is_nearest)) seen.y = 0u;
+  return seen;
 }
 
 Question question_for(int light, Receiver p) {
@@ -69,7 +72,6 @@ Question question_for(int light, Receiver p) {
   uvec2 seen_w = seen_in(corner, first + ivec2(1, 1), nearest == 3, p);
   uvec4 seen = uvec4(seen_x.x, seen_y.x, seen_z.x, seen_w.x);
   uvec4 edges = uvec4(seen_x.y, seen_y.y, seen_z.y, seen_w.y);
-  asked.nearest = nearest == 0 ? seen.x : nearest == 1 ? seen.y : nearest == 2 ? seen.z : seen.w;
   // Each once.
   if (seen.y == seen.x) seen.y = 0u;
   if (seen.z == seen.x || seen.z == seen.y) seen.z = 0u;
@@ -122,6 +124,14 @@ uint next_of(inout Question open) {
   return one != 0u ? one : taken(open.edges_left);
 }
 
+/// Whether a veil stops this ray: every ray has its own chance.
+bool stops(float coverage, uint triangle, vec3 way, vec3 position) {
+  uvec3 from = floatBitsToUint(position), to = floatBitsToUint(way);
+  uint random = hash(hash(hash(triangle ^ from.x) ^ from.y) ^ from.z);
+  random = hash(hash(hash(random ^ to.x) ^ to.y) ^ to.z);
+  return float(random >> 8) * (1.0 / 16777216.0) < coverage;
+}
+
 /// Whether the next triangle is in the way. [Möller & Trumbore 1997] Behind the edge that the ray
 /// passes by one may be that is too slender for texels.
 bool is_in_way(inout Question open, Receiver p) {
@@ -140,13 +150,15 @@ bool is_in_way(inout Question open, Receiver p) {
   const float kSeam = 1e-5;
   float least = min(v_of_a, min(v_of_b, v_of_c));
   bool is_before = t > 0.0 && (KIND == 2 || t < 1.0);
-  if (is_before && least >= -kSeam) return true;
-  if (open.steps == 0 && seen == open.nearest && (seen & kHoles) != 0u) {
+  bool is_hit = is_before && least >= -kSeam;
+  if ((seen & kVeil) != 0u) return is_hit && stops(a.w, number, way, p.position);
+  if (is_hit) return true;
+  if ((seen & kHoles) != 0u) {
     // It stops what goes through its texel.
     float slope = dot(way, way) / max(dot(p.geometric, way), 1e-6);
-    if (-dot(from_a, way) > open.reach * slope) return true;
+    return -dot(from_a, way) > open.reach * slope;
   }
-  bool may_step = is_before && open.steps < kMostSteps && volume != 0.0 && (seen & kHoles) == 0u;
+  bool may_step = is_before && open.steps < kMostSteps && volume != 0.0;
   if (!may_step) return false;
   // Folded back under the last one: the ray passes by the rim of the mesh.
   float to_last = open.last == uint(a.w) ? v_of_c : open.last == uint(b.w) ? v_of_a : v_of_b;

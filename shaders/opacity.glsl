@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Where a surface with holes lets a ray through, as lantern/scene/surface.h says it.
+#include "shaders/hash.glsl"
 #include "shaders/texture.glsl"
 
 uniform float u_opacity;
@@ -8,13 +9,6 @@ uniform sampler2D u_opacity_texture;
 uniform vec4 u_opacity_look_up;  // see shaders/surface.frag.glsl
 uniform bool u_opacity_colours;
 uniform uint u_seed;
-
-/// Every input bit changes every output bit with a probability of about one half.
-uint hash(uint x) {
-  x = (x ^ (x >> 16)) * 0x7feb352du;
-  x = (x ^ (x >> 15)) * 0x846ca68bu;
-  return x ^ (x >> 16);
-}
 
 /// `place` tells apart the rays that have a seed in common.
 bool is_hole(uint triangle, ivec2 place, vec2 texcoord, float colour_alpha) {

@@ -3,6 +3,7 @@
 #include "shaders/shadow_map.glsl"
 #if HOLES
 #include "shaders/opacity.glsl"
+#include "shaders/texel.glsl"
 in vec2 v_texcoord;
 in float v_alpha;
 #endif
@@ -12,6 +13,12 @@ flat in uint v_triangle;
 flat in uint v_patch;
 
 uniform vec3 u_edges[2];  // the face's; see MapFace
+#if HOLES
+uniform bool u_is_veil;
+// What is behind that is drawn: what stops the texel's ray there.
+uniform bool u_is_behind;
+uniform highp usampler2D u_before;
+#endif
 
 layout(location = 0) out uvec4 o_texel;
 
@@ -20,8 +27,11 @@ void main() {
   if (min(dot(u_edges[0], off), dot(u_edges[1], off)) < 0.0) discard;
   uint number = v_triangle + 1u;
 #if HOLES
-  if (is_hole(v_triangle, ivec2(gl_FragCoord.xy), v_texcoord, v_alpha)) discard;
-  number |= kHoles;
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  if (u_is_behind && (texel_of(u_before, texel).x & kNumber) == number) discard;
+  bool is_asked_later = u_is_veil && !u_is_behind;
+  if (!is_asked_later && is_hole(v_triangle, texel, v_texcoord, v_alpha)) discard;
+  number |= is_asked_later ? kHoles | kVeil : kHoles;
 #endif
   o_texel = uvec4(number, floatBitsToUint(v_depth), v_patch, 0u);
 }

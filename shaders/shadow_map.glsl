@@ -8,9 +8,10 @@ uniform int u_map_size;
 ivec2 off_centre(ivec2 texel) { return 2 * texel + 1 - u_map_size; }
 
 // What a texel sees: the number of a triangle and 1, or 0. What a triangle with holes stops is known
-// for each texel alone.
+// for each texel alone, but a veil stops the same share of the rays everywhere.
 const uint kNumber = 0x0fffffffu;
 const uint kHoles = 0x10000000u;
+const uint kVeil = 0x20000000u;  // beside kHoles
 
 // What the block of two by two texels sees whose first one this is: the patch of its nearest
 // triangle, or 0; how far the nearest of other patches is and, in the lower half, the furthest of

@@ -4,7 +4,7 @@
 #include "shaders/texel.glsl"
 
 uniform highp usampler2D u_texels;  // of this map alone
-uniform highp usampler2D u_edge_texels;
+uniform highp usampler2D u_others;  // edges before that, or what is behind veils
 uniform ivec2 u_first;  // where it will be
 
 layout(location = 0) out uvec4 o_block;
@@ -12,11 +12,11 @@ layout(location = 1) out uvec4 o_number;
 
 void main() {
   ivec2 in_map = ivec2(gl_FragCoord.xy) - u_first;
-  uvec3 seen[8];  // number, depth, patch: of texels, then of edges
+  uvec3 seen[8];  // number, depth, patch: of texels, then of others
   uint nearest = 0xffffffffu, far = 0u, first = 0u;
   for (int i = 0; i < 8; ++i) {
     ivec2 texel = min(in_map + ivec2(i & 1, i >> 1 & 1), ivec2(u_map_size - 1));
-    seen[i] = i < 4 ? texel_of(u_texels, texel).xyz : texel_of(u_edge_texels, texel).xyz;
+    seen[i] = i < 4 ? texel_of(u_texels, texel).xyz : texel_of(u_others, texel).xyz;
     if (seen[i].x == 0u) seen[i].yz = uvec2(kInfinitelyFar << 16, 0u);
     bool has_holes = (seen[i].x & kHoles) != 0u;
     // Floats' bits are in their order. An edge hides no texel.

@@ -16,7 +16,7 @@ Rows rows_of(ivec2 size) {
 ivec2 texel_number(int i, Rows rows) { return ivec2(i & rows.last, i >> rows.shift); }
 
 /// A corner of a triangle and the number of the triangle beyond the edge from it to the next and 1,
-/// or 0.
+/// or 0; of a veil the share of the rays that it stops.
 vec4 corner_of(highp sampler2D corners, Rows rows, uint triangle, int corner) {
   return texel_of(corners, rows.size, texel_number(3 * int(triangle) + corner, rows));
 }

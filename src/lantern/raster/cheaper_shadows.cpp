@@ -2,9 +2,8 @@
 #include "lantern/raster/cheaper_shadows.h"
 
 #include "lantern/raster/edge_list.h"
-#include "lantern/sampling/distribution.h"
-#include "lantern/sampling/halton.h"
-#include "lantern/trace/tracer.h"
+#include "lantern/raster/map_faces.h"
+#include "lantern/raster/raster_lights.h"
 
 #include <algorithm>
 #include <vector>
@@ -17,36 +16,51 @@ namespace {
 // asks it.
 constexpr double kDrawingOfTriangle = 0.75, kAskingOfMap = 600.0;
 
-/// Quads of the volumes of lights that are spread over the surfaces, on average.
-double mean_quads(const World& world, const EdgeList& list) {
-  std::vector<double> areas;
-  for (std::uint32_t t = 0; t < world.size(); ++t) areas.push_back(world.area(t));
-  const Distribution by_area(areas);
-  constexpr std::uint64_t kLights = 16;
-  std::size_t quads = 0;
-  for (std::uint64_t i = 0; i < kLights; ++i) {
-    const auto choice = by_area.choose(static_cast<float>(radical_inverse(2, i)));
-    const auto triangle = static_cast<std::uint32_t>(choice.index);
-    const uvec3 v = world.triangles[triangle];
-    const Vec3 middle = (world.positions[v.x] + world.positions[v.y] + world.positions[v.z]) / 3.0f;
-    const Vec3 normal = glm::normalize(world.area_vector(triangle));
-    const Vec3 light = off_surface(middle, normal, world.coordinate_scale());
-    const std::vector<Vec4> front = {Vec4(normal, -glm::dot(normal, light))};
-    quads += list.volumes(Vec4(light, 1.0f), light, VolumeCount::kHalved, front).edges.size();
+/// Quads of the volumes of some of the lights, on average.
+double mean_quads(const EdgeList& list, std::span<const LightGroup> groups) {
+  constexpr std::size_t kLights = 16;
+  std::vector<std::pair<const LightGroup*, std::size_t>> all;
+  for (const LightGroup& group : groups) {
+    for (std::size_t i = 0; i < group.points.size(); ++i) all.emplace_back(&group, i);
   }
-  return static_cast<double>(quads) / static_cast<double>(kLights);
+  const std::size_t some = std::min(kLights, all.size());
+  std::size_t quads = 0;
+  for (std::size_t k = 0; k < some; ++k) {
+    const auto [group, i] = all[k * all.size() / some];
+    std::vector<Vec4> region;
+    if (!group->fronts.empty()) region.push_back(group->fronts[i]);
+    // Wherever the eye is.
+    const Vec3 eye(group->points[i]);
+    quads += list.volumes(group->points[i], eye, VolumeCount::kHalved, region).edges.size();
+  }
+  return static_cast<double>(quads) / static_cast<double>(some);
+}
+
+/// The share of the lights whose maps are not drawn anew for each sample.
+double kept_share(std::span<const LightGroup> groups, std::size_t casters) {
+  double bytes = 0.0;
+  for (const LightGroup& group : groups) {
+    const double side = map_size(group.formula, octahedron_size(casters));
+    bytes += static_cast<double>(group.points.size() * kMapTexelBytes) * side * side;
+  }
+  return std::min(1.0, static_cast<double>(kMapBytes) / bytes);
 }
 
 }  // namespace
 
-ShadowMethod cheaper_shadows(const World& world, const World& casters, std::size_t samples) {
+ShadowMethod cheaper_shadows(const World& casters, const VirtualLights& lights,
+                             std::size_t samples) {
   const auto triangles = static_cast<double>(casters.size());
+  const std::vector<LightGroup> groups = group_lights(lights, {}, casters.coordinate_scale());
   // A triangle by itself has three quads.
-  if (3.0 * triangles < kAskingOfMap) return ShadowMethod::kVolumes;
-  const double quads = mean_quads(world, EdgeList(casters, find_walls(world)));
-  const bool maps_are =
-      static_cast<double>(samples) * (quads - kAskingOfMap) > kDrawingOfTriangle * triangles;
-  return maps_are ? ShadowMethod::kMaps : ShadowMethod::kVolumes;
+  if (groups.empty() || 3.0 * triangles < kAskingOfMap) return ShadowMethod::kVolumes;
+  const double quads = mean_quads(EdgeList(casters, find_walls(casters)), groups);
+  const auto n = static_cast<double>(samples);
+  const double kept = kept_share(groups, casters.size());
+  const double by_volumes = n * quads;
+  const double by_maps =
+      (kept + n * (1.0 - kept)) * kDrawingOfTriangle * triangles + n * kAskingOfMap;
+  return by_maps < by_volumes ? ShadowMethod::kMaps : ShadowMethod::kVolumes;
 }
 
 }  // namespace lantern

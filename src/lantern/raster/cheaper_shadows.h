@@ -3,6 +3,7 @@
 // volumes draw the quads of a silhouette for every sample. No GL in it.
 #pragma once
 
+#include "lantern/lights/virtual_lights.h"
 #include "lantern/raster/shadow_method.h"
 #include "lantern/scene/world.h"
 
@@ -10,8 +11,9 @@
 
 namespace lantern {
 
-/// kVolumes or kMaps, for `samples` that are drawn with the shadows of the same lights, wherever on
-/// the scene's surfaces these are. `casters`: those of the world's triangles that cast shadows.
-ShadowMethod cheaper_shadows(const World& world, const World& casters, std::size_t samples);
+/// kVolumes or kMaps, for `samples` that are drawn with the shadows of these lights, or of others
+/// like them. `casters`: those triangles that cast shadows.
+ShadowMethod cheaper_shadows(const World& casters, const VirtualLights& lights,
+                             std::size_t samples);
 
 }  // namespace lantern

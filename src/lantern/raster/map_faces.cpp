@@ -109,6 +109,19 @@ MapFace parallel_face(const MapFrame& frame, const Bounds& bounds, int size, Cli
 
 }  // namespace
 
+int octahedron_size(std::size_t casters) {
+  // Among many triangles more edges of shadows have to be told apart.
+  constexpr std::size_t kMany = 10'000;
+  return casters < kMany ? 256 : 384;
+}
+
+int map_size(LightFormula formula, int octahedron) {
+  // All that is seen from infinity is in one picture, near things too.
+  constexpr int kFromInfinity = 1024;
+  if (formula == LightFormula::kDirectional) return kFromInfinity;
+  return formula == LightFormula::kPunctual ? octahedron : octahedron * 3 / 4;
+}
+
 std::vector<MapFrame> map_frames(const LightGroup& group, const MapBounds& bounds, int size) {
   std::vector<MapFrame> frames;
   for (const LightRecord& record : group.records) {

@@ -24,6 +24,17 @@ struct MapBounds {
   Bounds scene, receivers;
 };
 
+/// Texels a side of a point light's map, an octahedron, where there are so many casters.
+int octahedron_size(std::size_t casters);
+/// Those of other lights' maps beside such octahedra.
+int map_size(LightFormula formula, int octahedron);
+
+/// What a texel of a map takes: two numbers, what a block sees and, in half as many texels again,
+/// windows.
+inline constexpr std::size_t kMapTexelBytes = 5 * sizeof(std::uint32_t);
+/// What maps that are kept may take together.
+inline constexpr std::size_t kMapBytes = 1280ull << 20;
+
 /// Of each light of the group; maps have `size` texels a side.
 std::vector<MapFrame> map_frames(const LightGroup& group, const MapBounds& bounds, int size);
 

@@ -46,13 +46,14 @@ VolumeMethod method(VolumeMethod asked, const gl::Info& gl) {
 }
 
 /// kVolumes or kMaps.
-ShadowMethod shadow_method(const RasterOptions& options, const World& world, const World& casters) {
+ShadowMethod shadow_method(const RasterOptions& options, const World& casters,
+                           const VirtualLights& lights) {
   if (options.shadows != ShadowMethod::kCheaper) return options.shadows;
   // Who studies volumes wants them.
   if (options.show_volumes || options.volumes != VolumeMethod::kExact) {
     return ShadowMethod::kVolumes;
   }
-  return cheaper_shadows(world, casters, options.samples_of_lights);
+  return cheaper_shadows(casters, lights, options.samples_of_lights);
 }
 
 /// Where light number `i` is.
@@ -70,7 +71,9 @@ LightPoint point_of(const VirtualLights& lights, std::size_t i, float scale) {
 }  // namespace
 
 struct Rasteriser::State {
+  const Scene& scene;
   const World& world;
+  const gl::Info& gl;
   RasterOptions options;
   ViewOptions view_options;
   gl::ShaderFiles files;
@@ -85,8 +88,10 @@ struct Rasteriser::State {
   std::array<QuadTarget, 2> radiance;  // the sum of some samples, and that with one more
   gl::VertexArray no_vertices;
 
-  State(const Scene& scene, const World& all, const gl::Info& gl, const RasterOptions& with)
-      : world(all),
+  State(const Scene& of, const World& all, const gl::Info& info, const RasterOptions& with)
+      : scene(of),
+        world(all),
+        gl(info),
         options(with),
         view_options{.width = with.width,
                      .height = with.height,
@@ -97,25 +102,29 @@ struct Rasteriser::State {
         solid(solid_part(scene, all)),
         resolve(resolve_program(false)),
         resolve_and_add(resolve_program(true)),
-        radiance{QuadTarget(quads().size()), QuadTarget(quads().size())} {
+        radiance{QuadTarget(quads().size()), QuadTarget(quads().size())} {}
+
+  /// Makes what shadows are found by, once it is known of what lights.
+  void choose_shadows(const VirtualLights& lights) {
+    if (lighting || interleaving) return;
     const bool none_solid = solid && solid->triangles.empty();
-    const bool by_maps =
-        !none_solid && shadow_method(with, all, solid ? *solid : all) == ShadowMethod::kMaps;
+    const bool by_maps = !none_solid && shadow_method(options, solid ? *solid : world, lights) ==
+                                            ShadowMethod::kMaps;
     if (!by_maps && !none_solid) {
-      volumes.emplace(all, files, method(with.volumes, gl), solid ? &*solid : nullptr);
+      volumes.emplace(world, files, method(options.volumes, gl), solid ? &*solid : nullptr);
     }
     Shadows shadows{.volumes = volumes ? &*volumes : nullptr};
     // What has holes would hide in maps what is behind it; volumes know triangles alone.
     for (const MapCasters casters : {MapCasters::kSolid, MapCasters::kWithHoles}) {
       if (casters == MapCasters::kSolid ? !by_maps : !solid) continue;
-      maps.emplace_back(scene, all, surfaces, files,
+      maps.emplace_back(scene, world, surfaces, files,
                         ShadowMapOptions{.range = view_options.range, .casters = casters});
       shadows.maps.push_back(&maps.back());
     }
-    if (with.tile > 1) {
+    if (options.tile > 1) {
       interleaving.emplace(surfaces, shadows, times, files, view_options);
     } else {
-      lighting.emplace(surfaces, shadows, times, files, with.width, with.height);
+      lighting.emplace(surfaces, shadows, times, files, options.width, options.height);
     }
   }
 
@@ -198,6 +207,7 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
                        const std::function<void(std::size_t)>& pixels_done) {
   State& s = *state_;
   const RasterOptions& options = s.options;
+  s.choose_shadows(lights);
   Image image(options.width, options.height);
   std::optional<VolumeView> volumes;
   if (options.show_volumes) {
@@ -235,6 +245,7 @@ Image Rasteriser::draw(const Camera& camera, const VirtualLights& lights,
 void Rasteriser::draw_frame(const Camera& camera, const VirtualLights& lights,
                             std::span<const float> bounds, std::size_t sample) {
   state_->times.collect();
+  state_->choose_shadows(lights);
   const auto groups = state_->groups(lights, bounds, sample);
   for (ShadowMaps& maps : state_->maps) maps.keep(groups);
   state_->draw(camera, groups, sample, true, [] { return true; });

@@ -29,8 +29,8 @@ struct RasterOptions {
   int samples = 1;  // per pixel and pass
   int tile = 1;     // tile x tile pixels share the lights; 1: every sample against all of them
   ShadowMethod shadows = ShadowMethod::kVolumes;
-  // How many samples are drawn with the shadows of the same lights: kCheaper asks, since maps are
-  // kept and volumes are drawn each time.
+  // How many samples are drawn with the shadows of the same lights, which tells kCheaper by the
+  // first of them: maps are kept, volumes are drawn each time.
   std::size_t samples_of_lights = 1;
   // The samples of a pixel deal the lights out among them, each takes its own with the flux of all:
   // edges are smoothed at the price of drawing the surfaces again. [Keller 1997]
@@ -41,7 +41,7 @@ struct RasterOptions {
 
 class Rasteriser {
  public:
-  /// Keeps references to `scene` and `world`. Throws Error where GL lacks what is needed.
+  /// Keeps references to `scene`, `world` and `gl`. Throws Error where GL lacks what is needed.
   Rasteriser(const Scene& scene, const World& world, const gl::Info& gl,
              const RasterOptions& options);
   ~Rasteriser();

@@ -19,8 +19,6 @@
 namespace lantern {
 namespace {
 
-// Two numbers, what a block sees and, in half as many texels again, windows.
-constexpr std::size_t kTexelBytes = 5 * sizeof(std::uint32_t);
 constexpr int kMapsAcross = 4;  // as in shaders/shadow_maps.glsl
 constexpr int kMapLevels = 6;   // as in shaders/shadow_map.glsl
 
@@ -38,12 +36,6 @@ std::uint32_t seed_of(const MapFrame& frame) {
 gl::Program caster_program(const gl::ShaderFiles& files, bool holes) {
   return gl::Program(files, "shaders/shadow_map.vert.glsl", "shaders/shadow_map.frag.glsl",
                      {{"HOLES", holes ? "1" : "0"}});
-}
-
-/// Among many triangles more edges of shadows have to be told apart.
-int size_for(std::size_t triangles) {
-  constexpr std::size_t kMany = 10'000;
-  return triangles < kMany ? 256 : 384;
 }
 
 int rows_of(const LightGroup& group) {
@@ -95,10 +87,10 @@ gl::Texture frame_texture(std::span<const MapFrame> frames) {
 
 ShadowMaps::Unfinished::Unfinished(int size)
     : texels(gl::Format::kRgba32ui, size, size),
-      edges(gl::Format::kRgba32ui, size, size),
+      others(gl::Format::kRgba32ui, size, size),
       depth(gl::Format::kDepth32f, size, size),
       framebuffer({&texels}, &depth),
-      edge_framebuffer({&edges}, &depth) {}
+      framebuffer_of_others({&others}, &depth) {}
 
 ShadowMaps::Casters ShadowMaps::casters_of(const Scene& scene, const World& world,
                                            MapCasters which) {
@@ -123,6 +115,7 @@ ShadowMaps::Casters ShadowMaps::casters_of(const Scene& scene, const World& worl
     Batch& added = casters.batches.emplace_back();
     if (batch > walls.size()) {
       added.material_with_holes = batch - 1 - walls.size();
+      added.is_veil = even_coverage(scene.materials[*added.material_with_holes]).has_value();
     } else if (batch > 0) {
       added.wall = walls[batch - 1];
     }
@@ -134,7 +127,7 @@ ShadowMaps::Casters ShadowMaps::casters_of(const Scene& scene, const World& worl
 }
 
 std::size_t ShadowMaps::Maps::bytes() const {
-  return kTexelBytes * static_cast<std::size_t>(numbers.width()) *
+  return kMapTexelBytes * static_cast<std::size_t>(numbers.width()) *
          static_cast<std::size_t>(numbers.height());
 }
 
@@ -149,7 +142,7 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
       blocks_(files, "shaders/full_screen.vert.glsl", "shaders/shadow_map_blocks.frag.glsl"),
       windows_(files, "shaders/full_screen.vert.glsl", "shaders/shadow_map_windows.frag.glsl"),
       casters_(casters_of(scene, world, options.casters)),
-      size_(options.size.value_or(size_for(casters_.order.size()))),
+      size_(options.size.value_or(octahedron_size(casters_.order.size()))),
       indices_(std::span<const std::uint32_t>()),
       array_({}, &indices_) {
   assert(size_ % 128 == 0);
@@ -204,12 +197,11 @@ void ShadowMaps::find_widths(const World& world) {
 }
 
 int ShadowMaps::size_of(LightFormula formula) const {
-  // All that is seen is in one picture, near things too. Holes have the edges of texels at any
-  // size.
-  constexpr int kFromInfinity = 1024, kHolesFromInfinity = 512;
-  if (formula == LightFormula::kPunctual) return size_;
-  if (formula == LightFormula::kSurface) return size_ * 3 / 4;
-  return options_.casters == MapCasters::kSolid ? kFromInfinity : kHolesFromInfinity;
+  // Holes have the edges of texels at any size.
+  constexpr int kHolesFromInfinity = 512;
+  const bool holes = options_.casters == MapCasters::kWithHoles;
+  if (holes && formula == LightFormula::kDirectional) return kHolesFromInfinity;
+  return map_size(formula, size_);
 }
 
 bool ShadowMaps::are_of(const Maps& maps, const LightGroup& group) {
@@ -248,7 +240,7 @@ void ShadowMaps::draw(const LightGroup& group, const Bounds& receivers, StageTim
   if (found != kept_.end()) kept_.erase(found);  // of another place
   const int size = size_of(group.formula);
   const int width = kMapsAcross * size, height = rows_of(group) * size;
-  make_room(kTexelBytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  make_room(kMapTexelBytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   std::vector<MapFrame> frames = map_frames(group, {.scene = bounds_, .receivers = box}, size);
   gl::Texture frame_texels = frame_texture(frames);
   kept_.push_back({group.formula, group.records, group.points, box, std::move(frames),
@@ -272,7 +264,7 @@ void ShadowMaps::draw(const Maps& maps) {
     const glm::ivec2 first = size * glm::ivec2(place % kMapsAcross, place / kMapsAcross);
     glViewport(first.x, first.y, size, size);
     blocks_.set("u_texels", 0, unfinished.texels);
-    blocks_.set("u_edge_texels", 1, unfinished.edges);
+    blocks_.set("u_others", 1, unfinished.others);
     blocks_.set("u_map_size", size);
     blocks_.set("u_first", first);
     gl::draw_full_screen(no_vertices_);
@@ -304,7 +296,8 @@ void ShadowMaps::draw_windows(const Maps& maps) {
 void ShadowMaps::draw_light(const Maps& maps, std::size_t light, const Unfinished& unfinished) {
   const std::vector<MapFace> faces =
       map_faces(maps.frames[light], maps.formula, bounds_, size_of(maps.formula), options_.range);
-  Drawn triangles, edges;
+  Drawn triangles{.mode = GL_TRIANGLES, .faces = faces};
+  Drawn edges{.mode = GL_LINES, .faces = behind(faces, options_.range)};
   for (const Batch& batch : casters_.batches) {
     const bool none = batch.wall && is_inside(std::span(&*batch.wall, 1), maps.points[light]);
     for (const MapFace& face : faces) {
@@ -325,32 +318,39 @@ void ShadowMaps::draw_light(const Maps& maps, std::size_t light, const Unfinishe
   View view{};
   view.near_is_1 = options_.range == ClipRange::kFarIs0;
   const GLuint nothing[4] = {};
-  array_.bind();
-  glVertexAttrib4f(kColour, 1.0f, 1.0f, 1.0f, 1.0f);
-  unfinished.framebuffer.bind();
-  apply({.depth = DepthUse::kDraw}, view);
-  glClearBufferuiv(GL_COLOR, 0, nothing);
   const float far = far_depth(view);
-  glClearBufferfv(GL_DEPTH, 0, &far);
-  draw_batches(maps, light, faces, triangles, GL_TRIANGLES);
-  unfinished.edge_framebuffer.bind();
+  apply({.depth = DepthUse::kDraw}, view);
+  unfinished.framebuffer.bind();
   glClearBufferuiv(GL_COLOR, 0, nothing);
-  if (!edges.indices.empty())
-    draw_batches(maps, light, behind(faces, options_.range), edges, GL_LINES);
+  glClearBufferfv(GL_DEPTH, 0, &far);
+  draw_batches(maps, light, triangles);
+  unfinished.framebuffer_of_others.bind();
+  glClearBufferuiv(GL_COLOR, 0, nothing);
+  if (!edges.indices.empty()) draw_batches(maps, light, edges);
+  const bool any_veil = std::any_of(casters_.batches.begin(), casters_.batches.end(),
+                                    [](const Batch& batch) { return batch.is_veil; });
+  if (!any_veil) return;
+  glClearBufferfv(GL_DEPTH, 0, &far);
+  triangles.before = &unfinished.texels;
+  draw_batches(maps, light, triangles);
 }
 
-void ShadowMaps::draw_batches(const Maps& maps, std::size_t light, std::span<const MapFace> faces,
-                              const Drawn& drawn, GLenum mode) {
+void ShadowMaps::draw_batches(const Maps& maps, std::size_t light, const Drawn& drawn) {
   indices_.write(std::span<const std::uint32_t>(drawn.indices));
+  array_.bind();
+  glVertexAttrib4f(kColour, 1.0f, 1.0f, 1.0f, 1.0f);
   std::size_t first = 0, part = 0;
   for (const Batch& batch : casters_.batches) {
     const gl::Program& program = batch.material_with_holes ? with_holes_ : solid_;
     if (batch.material_with_holes) {
       surfaces_.set_opacity(program, *batch.material_with_holes, 0);
       program.set("u_seed", seed_of(maps.frames[light]));
+      program.set("u_is_veil", batch.is_veil ? 1 : 0);
+      program.set("u_is_behind", drawn.before ? 1 : 0);
+      program.set("u_before", 1, drawn.before ? *drawn.before : maps.numbers);
     }
     program.set("u_map_size", size_of(maps.formula));
-    for (const MapFace& face : faces) {
+    for (const MapFace& face : drawn.faces) {
       const std::size_t end = drawn.ends[part++];
       if (end == first) continue;
       program.set("u_origin", face.origin);
@@ -359,7 +359,7 @@ void ShadowMaps::draw_batches(const Maps& maps, std::size_t light, std::span<con
       program.set("u_clip", face.clip);
       program.set("u_depth", face.depth);
       glViewport(face.x, face.y, face.width, face.height);
-      glDrawElements(mode, static_cast<GLsizei>(end - first), GL_UNSIGNED_INT,
+      glDrawElements(drawn.mode, static_cast<GLsizei>(end - first), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(first * sizeof(std::uint32_t)));
       first = end;
     }

@@ -33,7 +33,7 @@ struct ShadowMapOptions {
   // Texels a side of an octahedron, a multiple of 128; half of one has three quarters of them, what
   // is seen from infinity a size of its own. None: as the number of casters asks for.
   std::optional<int> size = std::nullopt;
-  std::size_t bytes = 1280ull << 20;  // that maps may take; the group in use always has its own
+  std::size_t bytes = kMapBytes;  // that maps may take; the group in use always has its own
   ClipRange range = ClipRange::kFarIs0;
   MapCasters casters = MapCasters::kSolid;
 };
@@ -71,10 +71,11 @@ class ShadowMaps {
     std::size_t bytes() const;
   };
 
-  /// What a map is drawn into first: what texels see and, apart, edges before that.
+  /// What a map is drawn into first: what texels see and, apart, edges before that or what stands
+  /// behind veils.
   struct Unfinished {
-    gl::Texture texels, edges, depth;
-    gl::Framebuffer framebuffer, edge_framebuffer;
+    gl::Texture texels, others, depth;
+    gl::Framebuffer framebuffer, framebuffer_of_others;
     explicit Unfinished(int size);
   };
 
@@ -82,6 +83,7 @@ class ShadowMaps {
   /// wall, or those of a material.
   struct Batch {
     std::optional<std::size_t> material_with_holes;
+    bool is_veil = false;           // see even_coverage()
     std::optional<Vec4> wall;       // nothing in it is between two points on its positive side
     std::vector<Cluster> clusters;  // of the order of all casters
     std::vector<float> widths;      // of each cluster's most slender patch
@@ -90,10 +92,13 @@ class ShadowMaps {
     std::vector<std::uint32_t> order;  // of the world's triangles
     std::vector<Batch> batches;
   };
-  /// What is drawn of each batch in each face: runs of the indices.
+  /// What is drawn of a light: for each batch and face a run of the indices.
   struct Drawn {
-    std::vector<std::uint32_t> indices;
-    std::vector<std::size_t> ends;
+    GLenum mode;
+    std::vector<MapFace> faces;
+    std::vector<std::uint32_t> indices = {};
+    std::vector<std::size_t> ends = {};
+    const gl::Texture* before = nullptr;  // only what is behind the triangles that these texels see
   };
   static Casters casters_of(const Scene& scene, const World& world, MapCasters which);
   void find_widths(const World& world);
@@ -104,8 +109,7 @@ class ShadowMaps {
   void draw(const Maps& maps);
   void draw_windows(const Maps& maps);
   void draw_light(const Maps& maps, std::size_t light, const Unfinished& unfinished);
-  void draw_batches(const Maps& maps, std::size_t light, std::span<const MapFace> faces,
-                    const Drawn& drawn, GLenum mode);
+  void draw_batches(const Maps& maps, std::size_t light, const Drawn& drawn);
 
   TriangleTextures triangles_;
   Bounds bounds_;

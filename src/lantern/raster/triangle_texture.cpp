@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "lantern/raster/triangle_texture.h"
 
+#include "lantern/scene/surface.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -30,7 +33,7 @@ gl::Texture texture_of(gl::Format format, std::vector<T> channels) {
   return texture;
 }
 
-gl::Texture corner_texture(const World& world, const ConvexPatches& patches,
+gl::Texture corner_texture(const Scene& scene, const World& world, const ConvexPatches& patches,
                            std::span<const std::array<std::uint32_t, 3>> neighbours) {
   std::vector<std::uint32_t> numbers(world.size());
   for (std::uint32_t i = 0; i < world.size(); ++i) numbers[patches.order[i]] = i + 1;
@@ -39,12 +42,13 @@ gl::Texture corner_texture(const World& world, const ConvexPatches& patches,
   // Floats count no further.
   constexpr std::uint32_t kCounted = 1u << 24;
   for (const std::uint32_t t : patches.order) {
+    const std::optional<float> coverage = even_coverage(scene.materials[index(world.materials[t])]);
     for (int i = 0; i < 3; ++i) {
       const Vec3 p = world.positions[world.triangles[t][i]];
       const std::uint32_t beyond = neighbours[t][static_cast<std::size_t>(i)];
       const std::uint32_t next = beyond == kNoTriangle ? 0 : numbers[beyond];
-      channels.insert(channels.end(),
-                      {p.x, p.y, p.z, next < kCounted ? static_cast<float>(next) : 0.0f});
+      const float number = next < kCounted ? static_cast<float>(next) : 0.0f;
+      channels.insert(channels.end(), {p.x, p.y, p.z, coverage.value_or(number)});
     }
   }
   return texture_of(gl::Format::kRgba32f, std::move(channels));
@@ -64,12 +68,12 @@ gl::Texture owner_texture(const World& world, const ConvexPatches& patches) {
 }  // namespace
 
 TriangleTextures::TriangleTextures(const Scene& scene, const World& world)
-    : TriangleTextures(world, find_neighbours(scene, world)) {}
+    : TriangleTextures(scene, world, find_neighbours(scene, world)) {}
 
-TriangleTextures::TriangleTextures(const World& world,
+TriangleTextures::TriangleTextures(const Scene& scene, const World& world,
                                    std::span<const std::array<std::uint32_t, 3>> neighbours)
     : patches(find_convex_patches(world, neighbours)),
-      corners(corner_texture(world, patches, neighbours)),
+      corners(corner_texture(scene, world, patches, neighbours)),
       owners(owner_texture(world, patches)) {}
 
 }  // namespace lantern

@@ -66,6 +66,13 @@ Rgb emission_at(const Scene& scene, const World& world, std::uint32_t triangle, 
                                         texcoord_at(world, triangle, uv)));
 }
 
+std::optional<float> even_coverage(const Material& material) {
+  const bool is_even = material.blend && !material.alpha_cutoff && !material.reflectance_texture &&
+                       !material.vertex_colours;
+  if (!is_even) return std::nullopt;
+  return std::clamp(material.opacity, 0.0f, 1.0f);
+}
+
 float coverage_at(const Scene& scene, const World& world, std::uint32_t triangle, Vec2 uv) {
   const Material& material = material_of(scene, world, triangle);
   if (!has_holes(material)) return 1.0f;

@@ -25,6 +25,9 @@ Rgb emission_at(const Scene& scene, const World& world, std::uint32_t triangle, 
 /// Whether rays may pass through surfaces of this material.
 inline bool has_holes(const Material& material) { return material.alpha_cutoff || material.blend; }
 
+/// Of a blended material whose surfaces stop the same share of the rays everywhere, that share.
+std::optional<float> even_coverage(const Material& material);
+
 /// Share of the rays that the surface stops, in [0, 1]; 0 or 1 but for blended materials.
 float coverage_at(const Scene& scene, const World& world, std::uint32_t triangle, Vec2 uv);
 
