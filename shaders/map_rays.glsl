@@ -38,6 +38,7 @@ struct Question {
   uvec4 triangles;  // what the four texels around see that may be in the way
   uvec4 edges;      // whose edges are there before that
   uvec4 left, edges_left;  // of these
+  uint nearest;     // what the texel sees in which the point is
   uint next, last;  // the triangle beyond an edge of the last one, which is asked first, unless 0
   int steps;        // that it is away from a texel's
 };
@@ -72,14 +73,16 @@ Question question_for(int light, Receiver p) {
   uvec2 seen_w = seen_in(corner, first + ivec2(1, 1), nearest == 3, p);
   uvec4 seen = uvec4(seen_x.x, seen_y.x, seen_z.x, seen_w.x);
   uvec4 edges = uvec4(seen_x.y, seen_y.y, seen_z.y, seen_w.y);
+  asked.nearest = nearest == 0 ? seen.x : nearest == 1 ? seen.y : nearest == 2 ? seen.z : seen.w;
   // Each once.
   if (seen.y == seen.x) seen.y = 0u;
   if (seen.z == seen.x || seen.z == seen.y) seen.z = 0u;
   if (seen.w == seen.x || seen.w == seen.y || seen.w == seen.z) seen.w = 0u;
-  if (any(equal(uvec4(edges.x), seen))) edges.x = 0u;
-  if (edges.y == edges.x || any(equal(uvec4(edges.y), seen))) edges.y = 0u;
-  if (edges.z == edges.x || edges.z == edges.y || any(equal(uvec4(edges.z), seen))) edges.z = 0u;
-  if (any(equal(uvec3(edges.w), edges.xyz)) || any(equal(uvec4(edges.w), seen))) edges.w = 0u;
+  uvec4 numbers = seen & kNumber, others = edges & kNumber;
+  if (any(equal(others.xxxx, numbers))) edges.x = 0u;
+  if (others.y == others.x || any(equal(others.yyyy, numbers))) edges.y = 0u;
+  if (any(equal(others.zz, others.xy)) || any(equal(others.zzzz, numbers))) edges.z = 0u;
+  if (any(equal(others.www, others.xyz)) || any(equal(others.wwww, numbers))) edges.w = 0u;
   asked.triangles = asked.left = seen;
   asked.edges = asked.edges_left = edges;
   asked.next = 0u;
@@ -153,10 +156,17 @@ bool is_in_way(inout Question open, Receiver p) {
   bool is_hit = is_before && least >= -kSeam;
   if ((seen & kVeil) != 0u) return is_hit && stops(a.w, number, way, p.position);
   if (is_hit) return true;
-  if ((seen & kHoles) != 0u) {
-    // It stops what goes through its texel.
+  // What has holes stops what goes through its texel. A triangle that is smaller than a texel
+  // stands for others like it, which rays do not find: leaves, gravel.
+  bool has_holes = (seen & kHoles) != 0u;
+  float size = 0.5 * open.reach;  // which is a texel's diagonal
+  vec3 bc = ac - ab;
+  float longest = max(dot(ab, ab), max(dot(ac, ac), dot(bc, bc)));
+  bool is_tiny = open.steps == 0 && seen == open.nearest && longest < size * size;
+  if (has_holes || is_tiny) {
     float slope = dot(way, way) / max(dot(p.geometric, way), 1e-6);
-    return -dot(from_a, way) > open.reach * slope;
+    if (-dot(from_a, way) > open.reach * slope) return true;
+    if (has_holes) return false;
   }
   bool may_step = is_before && open.steps < kMostSteps && volume != 0.0;
   if (!may_step) return false;

@@ -6,6 +6,7 @@
 #include "shaders/texel.glsl"
 in vec2 v_texcoord;
 in float v_alpha;
+flat in float v_is_slender;
 #endif
 
 in float v_depth;
@@ -28,10 +29,11 @@ void main() {
   uint number = v_triangle + 1u;
 #if HOLES
   ivec2 texel = ivec2(gl_FragCoord.xy);
-  if (u_is_behind && (texel_of(u_before, texel).x & kNumber) == number) discard;
-  bool is_asked_later = u_is_veil && !u_is_behind;
-  if (!is_asked_later && is_hole(v_triangle, texel, v_texcoord, v_alpha)) discard;
-  number |= is_asked_later ? kHoles | kVeil : kHoles;
+  uint before = texel_of(u_before, texel).x;
+  if (u_is_behind && ((before & kVeil) == 0u || (before & kNumber) == number)) discard;
+  bool is_met = u_is_veil && v_is_slender == 0.0 && !u_is_behind;
+  if (is_met ? u_opacity <= 0.0 : is_hole(v_triangle, texel, v_texcoord, v_alpha)) discard;
+  number |= is_met ? kHoles | kVeil : kHoles;
 #endif
   o_texel = uvec4(number, floatBitsToUint(v_depth), v_patch, 0u);
 }

@@ -6,8 +6,11 @@ layout(location = 2) in uint a_patch;
 #if HOLES
 layout(location = 3) in vec2 a_texcoord;
 layout(location = 4) in vec4 a_colour;
+layout(location = 5) in float a_height;  // the triangle's least
 out vec2 v_texcoord;
 out float v_alpha;
+flat out float v_is_slender;  // rays might miss it
+uniform float u_slender;      // the least height that they do not, where w is 1
 #endif
 
 uniform vec3 u_origin;
@@ -28,4 +31,7 @@ void main() {
   v_alpha = a_colour.a;
 #endif
   gl_Position = u_clip * vec4(place, 1.0);
+#if HOLES
+  v_is_slender = a_height < u_slender * gl_Position.w ? 1.0 : 0.0;
+#endif
 }

@@ -394,8 +394,9 @@ void add_render(CLI::App& app) {
       ->check(CLI::IsMember({"cpu", "gl"}))
       ->capture_default_str();
   command
-      ->add_option("--shadows", a.shadows,
-                   "How --backend gl finds shadows: stencil, interleaved, maps")
+      ->add_option(
+          "--shadows", a.shadows,
+          "How --backend gl finds shadows: stencil, interleaved (by volumes or maps), maps")
       ->check(CLI::IsMember({"stencil", "interleaved", "maps"}))
       ->capture_default_str();
   command->add_option("--tile", a.tile, "Pixels a side that share the lights, if interleaved")

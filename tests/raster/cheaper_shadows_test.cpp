@@ -26,10 +26,11 @@ TEST(CheaperShadows, AreMapsOnceManySilhouettesAreDrawnOftenEnough) {
   const auto chosen = [&](std::size_t samples) {
     return cheaper_shadows(stage.world, lights, samples);
   };
-  EXPECT_EQ(chosen(1), ShadowMethod::kVolumes);
-  EXPECT_EQ(chosen(1000), ShadowMethod::kMaps);
+  // Both took the same time at 13 when it was measured.
+  EXPECT_EQ(chosen(4), ShadowMethod::kVolumes);
+  EXPECT_EQ(chosen(40), ShadowMethod::kMaps);
   std::size_t changes = 0;
-  for (std::size_t samples = 1; samples < 1000; samples *= 2) {
+  for (std::size_t samples = 1; samples < 100; samples *= 2) {
     changes += chosen(samples) != chosen(2 * samples) ? 1 : 0;
   }
   EXPECT_EQ(changes, 1u);

@@ -171,6 +171,31 @@ TEST_P(MapsTest, BarsThatAreMoreSlenderThanTexels) {
   EXPECT_LT(d.share(d.lost), kRounding);
 }
 
+/// Leaves of 2 cm that share no edges, about as large as texels: which of them are seen is up to
+/// chance, but as much light gets through as by rays, 85 %.
+TEST_P(MapsTest, LeavesThatAreSmallerThanTexels) {
+  Scene scene = test::room_of_balls(8, 8);
+  scene.instances.resize(2);
+  Mesh leaves;
+  constexpr std::uint32_t kLeaves = 50'000;
+  for (std::uint32_t i = 0; i < kLeaves; ++i) {
+    const auto number = [&](std::uint64_t k) { return to_unit_float(hash(i, k)); };
+    const Vec3 place(4.0f * number(0), 0.8f + 0.3f * number(1), 4.0f * number(2));
+    const Vec3 u = glm::normalize(Vec3(number(3), number(4), number(5)) - 0.5f);
+    const Vec3 v = glm::normalize(glm::cross(u, Vec3(number(6), number(7), number(8)) - 0.5f));
+    for (const Vec3& corner : {place, place + 0.02f * u, place + 0.02f * v}) {
+      leaves.positions.push_back(corner);
+    }
+    leaves.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+  }
+  scene.instances.push_back(
+      {.mesh = to_id<MeshId>(scene.meshes.size()), .transform = Mat4(1.0f), .material = {}});
+  scene.meshes.push_back(leaves);
+  const Difference d = compare(test::RasterStage(std::move(scene)), 6, 2);
+  // 4.3 % leak and 3.3 % are lost; were all rays that meet no leaf they know of lit, 5.4 and 0.4 %.
+  EXPECT_NEAR(d.share(d.leaks), d.share(d.lost), 0.02);
+}
+
 TEST_P(MapsTest, LightsOfOtherKinds) {
   Scene scene = test::room_of_balls(12, 12);
   scene.meshes[0].triangles.resize(10);  // for the sun to shine in
@@ -241,7 +266,7 @@ TEST_P(MapsTest, WhereMemoryEndsSomeAreKept) {
   const test::RasterStage stage(test::own_scene("cornell_box.scene"));
   constexpr int kSize = 128;
   // Of 32 lights.
-  constexpr std::size_t kOneGroup = 32 * (kSize * 3 / 4) * (kSize * 3 / 4) * 20;
+  constexpr std::size_t kOneGroup = 32 * (kSize * 3 / 4) * (kSize * 3 / 4) * kMapTexelBytes;
   Maps maps(stage, {.size = kSize, .bytes = 2 * kOneGroup});
   std::vector<LightGroup> groups = maps.groups(stage.lights(80));
   groups.resize(4);

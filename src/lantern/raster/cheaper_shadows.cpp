@@ -16,8 +16,8 @@ namespace {
 // asks it.
 constexpr double kDrawingOfTriangle = 0.75, kAskingOfMap = 600.0;
 
-/// Quads of the volumes of some of the lights, on average.
-double mean_quads(const EdgeList& list, std::span<const LightGroup> groups) {
+/// Quads of the volumes of some of the lights, on average; wherever the eye is.
+double mean_quads(const EdgeList& list, std::span<const LightGroup> groups, const Vec3& eye) {
   constexpr std::size_t kLights = 16;
   std::vector<std::pair<const LightGroup*, std::size_t>> all;
   for (const LightGroup& group : groups) {
@@ -29,8 +29,6 @@ double mean_quads(const EdgeList& list, std::span<const LightGroup> groups) {
     const auto [group, i] = all[k * all.size() / some];
     std::vector<Vec4> region;
     if (!group->fronts.empty()) region.push_back(group->fronts[i]);
-    // Wherever the eye is.
-    const Vec3 eye(group->points[i]);
     quads += list.volumes(group->points[i], eye, VolumeCount::kHalved, region).edges.size();
   }
   return static_cast<double>(quads) / static_cast<double>(some);
@@ -54,7 +52,8 @@ ShadowMethod cheaper_shadows(const World& casters, const VirtualLights& lights,
   const std::vector<LightGroup> groups = group_lights(lights, {}, casters.coordinate_scale());
   // A triangle by itself has three quads.
   if (groups.empty() || 3.0 * triangles < kAskingOfMap) return ShadowMethod::kVolumes;
-  const double quads = mean_quads(EdgeList(casters, find_walls(casters)), groups);
+  const double quads =
+      mean_quads(EdgeList(casters, find_walls(casters)), groups, casters.bounds.centre());
   const auto n = static_cast<double>(samples);
   const double kept = kept_share(groups, casters.size());
   const double by_volumes = n * quads;

@@ -22,7 +22,7 @@ namespace {
 constexpr int kMapsAcross = 4;  // as in shaders/shadow_maps.glsl
 constexpr int kMapLevels = 6;   // as in shaders/shadow_map.glsl
 
-constexpr GLuint kPosition = 0, kNumber = 1, kPatch = 2, kTexcoord = 3, kColour = 4;
+constexpr GLuint kPosition = 0, kNumber = 1, kPatch = 2, kTexcoord = 3, kColour = 4, kHeight = 5;
 
 /// Each light's holes are its own.
 std::uint32_t seed_of(const MapFrame& frame) {
@@ -46,13 +46,20 @@ int rows_of(const LightGroup& group) {
 /// tells half its height.)
 constexpr float kSlender = 3.0f;
 
-/// The least width that texels do not miss where the cluster is furthest from the light.
+/// The least width that texels do not miss, at a distance.
+float slender_where_w_is_1(const MapFace& face) {
+  const Mat4 rows = glm::transpose(face.clip);
+  const float texels = std::min(glm::length(Vec3(rows[0])) * static_cast<float>(face.width),
+                                glm::length(Vec3(rows[1])) * static_cast<float>(face.height));
+  return kSlender * 2.0f / texels;
+}
+
+/// And where the cluster is furthest from the light.
 float slender_at(const MapFace& face, const Cluster& cluster) {
   const Mat4 rows = glm::transpose(face.clip);
   const float w = glm::dot(Vec3(rows[3]), cluster.centre - face.origin) + rows[3].w;
-  const float x = glm::length(Vec3(rows[0])) * static_cast<float>(face.width);
   const float most = w + cluster.radius * glm::length(Vec3(rows[3]));
-  return kSlender * 2.0f * most / x;
+  return slender_where_w_is_1(face) * most;
 }
 
 /// So that edges lie behind the triangles that they are of.
@@ -68,6 +75,22 @@ std::vector<MapFace> behind(std::vector<MapFace> faces, ClipRange range) {
     face.clip = glm::transpose(rows);
   }
   return faces;
+}
+
+/// Of each triangle, for each of its corners.
+gl::Buffer least_heights(const World& world, std::span<const std::uint32_t> order) {
+  std::vector<float> heights;
+  heights.reserve(3 * order.size());
+  for (const std::uint32_t t : order) {
+    float longest = 0.0f;
+    for (int corner = 0; corner < 3; ++corner) {
+      const uvec3 v = world.triangles[t];
+      longest = std::max(
+          longest, glm::distance(world.positions[v[corner]], world.positions[v[(corner + 1) % 3]]));
+    }
+    heights.insert(heights.end(), 3, 2.0f * world.area(t) / longest);
+  }
+  return gl::Buffer(std::span<const float>(heights));
 }
 
 /// A row for each.
@@ -147,7 +170,7 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
       array_({}, &indices_) {
   assert(size_ % 128 == 0);
   find_widths(world);
-  attributes_.reserve(5);
+  attributes_.reserve(6);
   const auto add = [&](gl::Buffer buffer, GLuint location, int channels, bool integer = false) {
     attributes_.push_back(std::move(buffer));
     array_.add({location, &attributes_.back(), channels, integer});
@@ -164,26 +187,30 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
       std::any_of(casters_.batches.begin(), casters_.batches.end(),
                   [](const Batch& batch) { return batch.material_with_holes.has_value(); });
   if (!any_holes) return;
+  add(least_heights(world, casters_.order), kHeight, 1);
   if (!world.texcoords.empty()) {
     add(by_corner(world, casters_.order, world.texcoords), kTexcoord, 2);
   }
   if (!world.colours.empty()) add(by_corner(world, casters_.order, world.colours), kColour, 4);
 }
 
-/// Of the most slender patch of each cluster, by its area and its length.
+/// Of the most slender patch of each cluster, by its area and its length. Of what is not flat a
+/// quarter of the surface is seen from a side, on average.
 void ShadowMaps::find_widths(const World& world) {
   const ConvexPatches& patches = triangles_.patches;
   std::vector<float> widths;
   for (const ConvexPatches::Patch& patch : patches.patches) {
+    const auto members = std::span(patches.order).subspan(patch.first, patch.count);
     float area = 0.0f;
     Bounds bounds;
-    for (const std::uint32_t t : std::span(patches.order).subspan(patch.first, patch.count)) {
+    for (const std::uint32_t t : members) {
       area += world.area(t);
       for (int corner = 0; corner < 3; ++corner) {
         bounds.add(world.positions[world.triangles[t][corner]]);
       }
     }
-    widths.push_back(area / std::max(2.0f * bounds.radius(), 1e-30f));
+    const bool is_flat = patches.sides[members.front()] == (kFrontIsOutside | kBackIsOutside);
+    widths.push_back((is_flat ? 1.0f : 0.25f) * area / std::max(2.0f * bounds.radius(), 1e-30f));
   }
   for (Batch& batch : casters_.batches) {
     for (const Cluster& cluster : batch.clusters) {
@@ -197,7 +224,7 @@ void ShadowMaps::find_widths(const World& world) {
 }
 
 int ShadowMaps::size_of(LightFormula formula) const {
-  // Holes have the edges of texels at any size.
+  // Most holes have the edges of texels at any size.
   constexpr int kHolesFromInfinity = 512;
   const bool holes = options_.casters == MapCasters::kWithHoles;
   if (holes && formula == LightFormula::kDirectional) return kHolesFromInfinity;
@@ -358,6 +385,7 @@ void ShadowMaps::draw_batches(const Maps& maps, std::size_t light, const Drawn& 
       program.set("u_edges[1]", face.edges[1]);
       program.set("u_clip", face.clip);
       program.set("u_depth", face.depth);
+      if (batch.material_with_holes) program.set("u_slender", slender_where_w_is_1(face));
       glViewport(face.x, face.y, face.width, face.height);
       glDrawElements(drawn.mode, static_cast<GLsizei>(end - first), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(first * sizeof(std::uint32_t)));
