@@ -213,6 +213,25 @@ TEST_P(MapsTest, LightsOfOtherKinds) {
   EXPECT_LT(d.share(d.lost), kRounding);
 }
 
+/// Far sides of closed bodies are left out of maps, but not those around a light. Fronts or backs
+/// are outside.
+TEST_P(MapsTest, LightsInsideAndOutsideOfBalls) {
+  for (const bool inside_out : {false, true}) {
+    Scene scene = test::room_of_balls(12, 12);
+    scene.materials[2].emission = Rgb(0.0f);
+    if (inside_out) {
+      for (uvec3& triangle : scene.meshes[2].triangles) std::swap(triangle.y, triangle.z);
+    }
+    PunctualLight inside, outside;
+    inside.position = Vec3(1.52f, 1.47f, 1.55f);
+    outside.position = Vec3(2.05f, 2.0f, 1.9f);
+    scene.lights = {inside, outside};
+    const Difference d = compare(test::RasterStage(std::move(scene)), 2, 3);
+    EXPECT_LT(d.share(d.leaks), kRounding);
+    EXPECT_LT(d.share(d.lost), kRounding);
+  }
+}
+
 /// A wall without thickness, from which all light stays away: depths compared with a bias would
 /// leak along its foot. (Under the ceiling the lamp would leave a light a slit to see it through.)
 TEST_P(MapsTest, NothingComesThroughAWall) {

@@ -5,6 +5,7 @@
 #include "lantern/gl/check.h"
 #include "lantern/raster/corner_buffer.h"
 #include "lantern/raster/draw_state.h"
+#include "lantern/raster/neighbours.h"
 #include "lantern/raster/triangle_texture.h"
 #include "lantern/scene/surface.h"
 
@@ -170,6 +171,7 @@ ShadowMaps::ShadowMaps(const Scene& scene, const World& world, const Surfaces& s
       array_({}, &indices_) {
   assert(size_ % 128 == 0);
   find_widths(world);
+  find_bodies(scene, world);
   attributes_.reserve(6);
   const auto add = [&](gl::Buffer buffer, GLuint location, int channels, bool integer = false) {
     attributes_.push_back(std::move(buffer));
@@ -221,6 +223,37 @@ void ShadowMaps::find_widths(const World& world) {
       batch.widths.push_back(least);
     }
   }
+}
+
+void ShadowMaps::find_bodies(const Scene& scene, const World& world) {
+  const auto neighbours = find_neighbours(scene, world);
+  std::vector<std::uint32_t> triangles = casters_.order;
+  casters_.bodies = make_bodies(world, neighbours, find_parts(neighbours), triangles);
+  std::vector<std::uint32_t> of_triangle(world.size(), 0);
+  for (std::uint32_t b = 0; b < casters_.bodies.size(); ++b) {
+    const Body& body = casters_.bodies[b];
+    for (const std::uint32_t t : std::span(triangles).subspan(body.first, body.count)) {
+      of_triangle[t] = b;
+    }
+  }
+  for (const std::uint32_t t : casters_.order) {
+    casters_.body_of.push_back(of_triangle[t]);
+    const bool is_front = casters_.bodies[of_triangle[t]].outside == SeenSide::kFront;
+    const Vec3 normal = glm::normalize(is_front ? world.area_vector(t) : -world.area_vector(t));
+    const Vec3 corner = world.positions[world.triangles[t].x];
+    casters_.planes.emplace_back(normal, -glm::dot(normal, corner));
+  }
+}
+
+bool ShadowMaps::is_turned_away(const Cluster& cluster, const LightPoint& light) const {
+  // What is seen along its plane is not left out for a rounding.
+  const float rounding = 1e-5f * (light.w != 0.0f ? bounds_.radius() : 1.0f);
+  for (std::uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
+    const Body& body = casters_.bodies[casters_.body_of[i]];
+    const SeenSide side = light.w != 0.0f ? seen_side(body, Vec3(light)) : body.outside;
+    if (side == SeenSide::kBoth || glm::dot(casters_.planes[i], light) > -rounding) return false;
+  }
+  return true;
 }
 
 int ShadowMaps::size_of(LightFormula formula) const {
@@ -325,10 +358,15 @@ void ShadowMaps::draw_light(const Maps& maps, std::size_t light, const Unfinishe
       map_faces(maps.frames[light], maps.formula, bounds_, size_of(maps.formula), options_.range);
   Drawn triangles{.mode = GL_TRIANGLES, .faces = faces};
   Drawn edges{.mode = GL_LINES, .faces = behind(faces, options_.range)};
+  const LightPoint& point = maps.points[light];
   for (const Batch& batch : casters_.batches) {
-    const bool none = batch.wall && is_inside(std::span(&*batch.wall, 1), maps.points[light]);
+    const bool none = batch.wall && is_inside(std::span(&*batch.wall, 1), point);
+    std::vector<std::size_t> seen;
+    for (std::size_t i = 0; i < batch.clusters.size() && !none; ++i) {
+      if (!is_turned_away(batch.clusters[i], point)) seen.push_back(i);
+    }
     for (const MapFace& face : faces) {
-      for (std::size_t i = 0; i < batch.clusters.size() && !none; ++i) {
+      for (const std::size_t i : seen) {
         const Cluster& cluster = batch.clusters[i];
         if (!may_lie_inside(cluster, face.origin, face.planes)) continue;
         const std::uint32_t end = 3 * (cluster.first + cluster.count);

@@ -6,6 +6,7 @@
 
 #include "lantern/gl/objects.h"
 #include "lantern/gl/program.h"
+#include "lantern/raster/bodies.h"
 #include "lantern/raster/clusters.h"
 #include "lantern/raster/edge_list.h"
 #include "lantern/raster/map_faces.h"
@@ -91,6 +92,9 @@ class ShadowMaps {
   struct Casters {
     std::vector<std::uint32_t> order;  // of the world's triangles
     std::vector<Batch> batches;
+    std::vector<Body> bodies;
+    std::vector<std::uint32_t> body_of;  // each caster
+    std::vector<Vec4> planes;  // of each caster, length 1, the outside of its body before it
   };
   /// What is drawn of a light: for each batch and face a run of the indices.
   struct Drawn {
@@ -102,6 +106,9 @@ class ShadowMaps {
   };
   static Casters casters_of(const Scene& scene, const World& world, MapCasters which);
   void find_widths(const World& world);
+  void find_bodies(const Scene& scene, const World& world);
+  /// Whether all of the cluster is on the far sides of closed convex bodies, which hide it.
+  bool is_turned_away(const Cluster& cluster, const LightPoint& light) const;
 
   int size_of(LightFormula formula) const;
   static bool are_of(const Maps& maps, const LightGroup& group);
