@@ -6,6 +6,8 @@
 #include "lantern/raster/raster_lights.h"
 
 #include <algorithm>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace lantern {

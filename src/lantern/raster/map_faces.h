@@ -8,6 +8,8 @@
 #include "lantern/raster/view.h"
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace lantern {
