@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Irradiance where tiles are not smooth: each light gives what it gives to this very point, were
 // nothing between, as far as it is seen from its share's pixels around on the same surface. With
-// AMID_PLANE these are all on it and face what the point does.
+// AMID_PLANE these are all on it; else the shares that have a pixel in the very row or column tell
+// whether all see less or more there than around.
 #include "shaders/colour_quads_out.glsl"
 #include "shaders/interleaved.glsl"
 #include "shaders/interleaved_masks.glsl"
@@ -22,75 +23,120 @@ Point point_at(ivec2 at) {
 
 /// The pixels that are shaded.
 struct Pixels {
+  ivec2 at;  // the first one's
   Point p0, p1, p2, p3;
 };
 
-// Shadows have edges: what most say counts for more.
-vec4 sharpened(vec4 seen) { return clamp(2.0 * seen - 0.5, 0.0, 1.0); }
-
-#if AMID_PLANE
-/// What a pixel of a share knows of its lights.
+/// A pixel of a share.
 struct Witness {
-  uint seen;    // bits of lights
-  vec4 weight;  // for each of the pixels: 1 / distance²
+  uint seen;     // bits of lights
+  vec4 strange;  // to each of the pixels that are shaded: 0 if it is on their surface
+  vec4 weight;   // 0 if there is none
 };
 
-Witness witness(ivec2 at, ivec2 first) {
-  vec4 dx = float(first.x - at.x) + vec4(0.0, 1.0, 2.0, 3.0);
-  float dy = float(first.y - at.y);
-  return Witness(mask_at(place_among_shares(at, textureSize(u_masks, 0))),
-                 1.0 / (dx * dx + dy * dy + 1e-6));
-}
-#else
-/// What a pixel of a share knows of its lights.
-struct Witness {
-  vec3 normal;           // geometric; 0 if there is no surface
-  float height;          // along it
-  uint seen;             // bits of lights
-  vec4 strange, weight;  // to each of the pixels
-};
-
-/// How strange a point is to p: 0 on its surface, else how little it is like one that is; and what
-/// it counts, 1 / distance².
+/// How little another point is like one on p's surface, 0 if it is one; and what it counts,
+/// 1 / distance².
 vec2 strange_and_weight(Point p, vec3 other, vec3 normal) {
   // Beyond 30 degrees it is another side of things, however smooth it is shaded.
   const float kOtherSide = 0.866;
-  vec3 way = other - p.position;
-  float alike = dot(p.geometric, normal);
-  float off = abs(dot(p.geometric, way)) / u_plane_distance;
-  float nearest = 1e-4 * u_plane_distance;
+  vec3 way = other - p.position, turn = normal - p.geometric;
+  float distance2 = dot(way, way), alike = dot(p.geometric, normal);
+  // What is round bends away from its planes.
+  float bent = sqrt(distance2 * dot(turn, turn));
+  float off = max(abs(dot(p.geometric, way)) - bent, 0.0) / u_plane_distance;
+  float nearest = 1e-2 * u_plane_distance;
   return vec2(alike > kOtherSide && off < 1.0 ? 0.0 : 1.0 - alike + 0.01 * off,
-              1.0 / (dot(way, way) + nearest * nearest));
+              1.0 / (distance2 + nearest * nearest));
 }
 
 Witness witness(ivec2 at, Pixels pixels) {
+#if AMID_PLANE
+  vec4 dx = float(pixels.at.x - at.x) + vec4(0.0, 1.0, 2.0, 3.0);
+  float dy = float(pixels.at.y - at.y);
+  return Witness(mask_at(place_among_shares(at, textureSize(u_masks, 0))), vec4(0.0),
+                 1.0 / (dx * dx + dy * dy + 1e-6));
+#else
   ivec2 inside = clamp(at, ivec2(0), textureSize(u_points, 0) - 1);
   uvec4 bits = texel_of(u_points, inside);
+  if (inside != at || bits == uvec4(0u)) return Witness(0u, vec4(1e30), vec4(0.0));  // or the sky
   vec3 point = uintBitsToFloat(bits.xyz), normal = unpack_unit(bits.w);
   vec2 to0 = strange_and_weight(pixels.p0, point, normal);
   vec2 to1 = strange_and_weight(pixels.p1, point, normal);
   vec2 to2 = strange_and_weight(pixels.p2, point, normal);
   vec2 to3 = strange_and_weight(pixels.p3, point, normal);
-  bool is_none = inside != at || bits == uvec4(0u);  // or the sky
-  Witness w;
-  w.normal = is_none ? vec3(0.0) : normal;
-  w.height = dot(w.normal, point);
-  w.seen = mask_at(place_among_shares(inside, textureSize(u_masks, 0)));
-  w.strange = is_none ? vec4(1e30) : vec4(to0.x, to1.x, to2.x, to3.x);
-  w.weight = is_none ? vec4(0.0) : vec4(to0.y, to1.y, to2.y, to3.y);
+  return Witness(mask_at(place_among_shares(at, textureSize(u_masks, 0))),
+                 vec4(to0.x, to1.x, to2.x, to3.x), vec4(to0.y, to1.y, to2.y, to3.y));
+#endif
+}
+
+/// The pixels around of one share: for each of the pixels that are shaded those count that are
+/// least strange to it.
+struct Witnesses {
+  uvec4 seen;
+  vec4 a, b, c, d;  // weights, in sum 1, or 0 if there are none
+};
+
+Witnesses witnesses(ivec2 low, ivec2 high, Pixels pixels) {
+  Witness a = witness(low, pixels), b = witness(ivec2(high.x, low.y), pixels);
+  Witness c = witness(ivec2(low.x, high.y), pixels), d = witness(high, pixels);
+  vec4 least = min(min(a.strange, b.strange), min(c.strange, d.strange));
+  Witnesses w;
+  w.seen = uvec4(a.seen, b.seen, c.seen, d.seen);
+  w.a = a.weight * vec4(lessThanEqual(a.strange, least));
+  w.b = b.weight * vec4(lessThanEqual(b.strange, least));
+  w.c = c.weight * vec4(lessThanEqual(c.strange, least));
+  w.d = d.weight * vec4(lessThanEqual(d.strange, least));
+  vec4 sum = max(w.a + w.b + w.c + w.d, 1e-30);
+  w.a /= sum;
+  w.b /= sum;
+  w.c /= sum;
+  w.d /= sum;
   return w;
 }
 
-/// Its weight where it is not too strange.
-vec4 heard(Witness w, vec4 least) { return w.weight * vec4(lessThanEqual(w.strange, least)); }
+// Shadows have edges: what most say counts for more.
+vec4 sharpened(vec4 seen) { return clamp(2.0 * seen - 0.5, 0.0, 1.0); }
 
-/// Whether the light could be seen, were nothing between.
-bool faces(Witness w, Light light) {
-#if KIND == 2
-  return dot(w.normal, light.place.xyz) < 0.0;
-#else
-  return dot(w.normal, light.place.xyz) > w.height;
-#endif
+#if !AMID_PLANE
+/// Of the lights of some shares which any of their pixels around sees, and for each of the pixels.
+struct Given {
+  vec4 open;     // what they give, were nothing between: brightness
+  vec4 seen;     // and what of it is seen
+  vec4 squares;  // sum of the squares of what each gives
+};
+
+Given nothing() { return Given(vec4(0.0), vec4(0.0), vec4(0.0)); }
+
+void add(inout Given sum, Given more, vec4 part) {
+  sum.open += part * more.open;
+  sum.seen += part * more.seen;
+  sum.squares += part * more.squares;
+}
+
+/// How much more is seen than `all` say, by what `near` ones do: their difference, less what may be
+/// chance, as they are other lights. [James & Stein 1961, whose estimator shrinks by variance /
+/// difference²]
+vec4 more_seen(Given all, Given near) {
+  vec4 open = max(near.open, 1e-30), open_others = max(all.open - near.open, 1e-30);
+  vec4 seen = near.seen / open;
+  vec4 difference = seen - (all.seen - near.seen) / open_others;
+  // 1 / how many lights they are as good as.
+  vec4 few = near.squares / (open * open);
+  vec4 few_others = (all.squares - near.squares) / (open_others * open_others);
+  // Of one light, seen or not. That all of a few are in shadow does not tell that others are.
+  vec4 variance = seen * (1.0 - seen) + 2.0 * few;
+  const float kSure = 6.0;
+  vec4 chance = kSure * variance * (few + few_others) / max(difference * difference, 1e-30);
+  return max(1.0 - chance, 0.0) * difference * open_others / max(all.open, 1e-30);
+}
+
+/// By how much to multiply what is seen.
+vec4 corrected(Given all, Given row, Given column, vec4 told, float lights) {
+  vec4 by_row = more_seen(all, row), by_column = more_seen(all, column);
+  vec4 more = mix(by_row, by_column, greaterThan(abs(by_column), abs(by_row)));
+  // Shares without a pixel around that sees any surface see as much as the others.
+  return max(all.seen + more * all.open, 0.0) / max(all.seen, 1e-30) * lights /
+         max(told, 1.0);
 }
 #endif
 
@@ -98,13 +144,13 @@ void main() {
   ivec2 at = first_pixel_of(ivec2(gl_FragCoord.xy));
   ivec2 last = textureSize(u_points, 0) - 1;
   Pixels pixels =
-      Pixels(point_at(min(at, last)), point_at(min(at + ivec2(1, 0), last)),
+      Pixels(at, point_at(min(at, last)), point_at(min(at + ivec2(1, 0), last)),
              point_at(min(at + ivec2(2, 0), last)), point_at(min(at + ivec2(3, 0), last)));
   vec3 sum0 = vec3(0.0), sum1 = vec3(0.0), sum2 = vec3(0.0), sum3 = vec3(0.0);
 #if !AMID_PLANE
-  // Of what lights give, were nothing between, where strangers are: what somebody could see, what
-  // of it is seen, what nobody could.
-  vec4 told = vec4(0.0), told_seen = vec4(0.0), untold = vec4(0.0);
+  Given all = nothing(), row = nothing(), column = nothing();
+  vec4 told = vec4(0.0);
+  float lights_of_all = 0.0;
 #endif
   int share = 0;
   do {
@@ -114,50 +160,17 @@ void main() {
     int x0 = at.x - TILE / 2, y1 = at.y + TILE;
     x0 += (share % TILE - x0) & (TILE - 1);
     y1 -= (at.y - share / TILE) & (TILE - 1);
-    int x1 = x0 + TILE, y0 = y1 - TILE;
-#if AMID_PLANE
-    Witness a = witness(ivec2(x0, y0), at), b = witness(ivec2(x1, y0), at);
-    Witness c = witness(ivec2(x0, y1), at), d = witness(ivec2(x1, y1), at);
-    vec4 all_of_them = a.weight + b.weight + c.weight + d.weight;
-    a.weight /= all_of_them;
-    b.weight /= all_of_them;
-    c.weight /= all_of_them;
-    d.weight /= all_of_them;
-#else
-    Witness a = witness(ivec2(x0, y0), pixels), b = witness(ivec2(x1, y0), pixels);
-    Witness c = witness(ivec2(x0, y1), pixels), d = witness(ivec2(x1, y1), pixels);
-    vec4 least = min(min(a.strange, b.strange), min(c.strange, d.strange));
-    vec4 hear_a = heard(a, least), hear_b = heard(b, least);
-    vec4 hear_c = heard(c, least), hear_d = heard(d, least);
+    Witnesses w = witnesses(ivec2(x0, y1 - TILE), ivec2(x0 + TILE, y1), pixels);
+#if !AMID_PLANE
+    Given given = nothing();
 #endif
-    uvec4 seen_by = uvec4(a.seen, b.seen, c.seen, d.seen);
-#if AMID_PLANE
-    uint left = seen_by_any(seen_by, count);
-#else
-    // Where one is on another surface the others may not face what a pixel does.
-    vec4 most = max(max(a.strange, b.strange), max(c.strange, d.strange));
-    bool are_strangers = any(greaterThan(most, vec4(0.0)));
-    uint left = are_strangers ? lowest_bits(count) : seen_by_any(seen_by, count);
-#endif
+    uint left = seen_by_any(w.seen, count);
     if (left != 0u) {
       do {
         int i = number_of(lowest(left));
         Light light = u_lights[first + i];
-#if AMID_PLANE
-        vec4 see = vec4(bit(seen_by, i));
-        vec4 seen =
-            sharpened(see.x * a.weight + see.y * b.weight + see.z * c.weight + see.w * d.weight);
-#else
-        bvec4 faces_it = bvec4(faces(a, light), faces(b, light), faces(c, light), faces(d, light));
-        uvec4 sees_it = bit(seen_by, i) & uvec4(faces_it);
-        vec4 can = vec4(faces_it), do_see = vec4(sees_it);
-        vec4 could = can.x * hear_a + can.y * hear_b + can.z * hear_c + can.w * hear_d;
-        vec4 seen = do_see.x * hear_a + do_see.y * hear_b + do_see.z * hear_c + do_see.w * hear_d;
-        seen = sharpened(seen / max(could, 1e-30));
-        // Of what these cannot tell the others may.
-        bool any_sees = (sees_it.x | sees_it.y | sees_it.z | sees_it.w) != 0u;
-        seen = mix(vec4(any_sees), seen, vec4(greaterThan(could, vec4(0.0))));
-#endif
+        vec4 see = vec4(bit(w.seen, i));
+        vec4 seen = sharpened(see.x * w.a + see.y * w.b + see.z * w.c + see.w * w.d);
         vec3 e0 = irradiance_from(light, pixels.p0), e1 = irradiance_from(light, pixels.p1);
         vec3 e2 = irradiance_from(light, pixels.p2), e3 = irradiance_from(light, pixels.p3);
         sum0 += seen.x * e0;
@@ -165,26 +178,30 @@ void main() {
         sum2 += seen.z * e2;
         sum3 += seen.w * e3;
 #if !AMID_PLANE
-        if (are_strangers) {
-          vec4 gives = vec4(brightness(e0), brightness(e1), brightness(e2), brightness(e3));
-          bool is_told = any(faces_it);
-          told += is_told ? gives : vec4(0.0);
-          told_seen += is_told ? seen * gives : vec4(0.0);
-          untold += is_told ? vec4(0.0) : gives;
-        }
+        vec4 open = vec4(brightness(e0), brightness(e1), brightness(e2), brightness(e3));
+        given.open += open;
+        given.seen += seen * open;
+        given.squares += open * open;
 #endif
         left ^= lowest(left);
       } while (left != 0u);
     }
+#if !AMID_PLANE
+    vec4 is_told = vec4(greaterThan(w.a + w.b + w.c + w.d, vec4(0.0)));
+    ivec4 columns = at.x + ivec4(0, 1, 2, 3);
+    add(all, given, vec4(1.0));
+    add(row, given, vec4(share / TILE == at.y % TILE));
+    add(column, given, vec4(equal(columns % TILE, ivec4(share % TILE))));
+    told += is_told * float(count);
+    lights_of_all += float(count);
+#endif
   } while (++share < TILE * TILE);
 #if !AMID_PLANE
-  // Of lights that nobody could see as much is seen as of the others.
-  vec4 sum = vec4(brightness(sum0), brightness(sum1), brightness(sum2), brightness(sum3));
-  vec4 more = 1.0 + untold * told_seen / max(told * sum, 1e-30);
-  sum0 *= more.x;
-  sum1 *= more.y;
-  sum2 *= more.z;
-  sum3 *= more.w;
+  vec4 factor = corrected(all, row, column, told, lights_of_all);
+  sum0 *= factor.x;
+  sum1 *= factor.y;
+  sum2 *= factor.z;
+  sum3 *= factor.w;
 #endif
   write_quad(sum0, sum1, sum2, sum3);
   if (u_first_round) return;

@@ -227,17 +227,19 @@ TEST(Pictures, ThousandsOfLightsLoseNothing) {
 TEST(Pictures, InterleavedComesClose) {
   struct Case {
     Scene scene;
-    int tile;
+    int tile, width, height;
     double mean;
   };
-  const std::vector<Case> cases = {{test::own_scene("cornell_box.scene"), 2, 0.004},
-                                   {test::own_scene("cornell_box.scene"), 4, 0.008},
-                                   {test::own_scene("cornell_box.scene"), 8, 0.014},
-                                   {test::room_of_balls(12, 12), 4, 0.02}};
+  // 250 and 190 are no multiple of any tile. A ball has twenty pixels there.
+  const std::vector<Case> cases = {{test::own_scene("cornell_box.scene"), 2, 250, 190, 0.004},
+                                   {test::own_scene("cornell_box.scene"), 4, 250, 190, 0.008},
+                                   {test::own_scene("cornell_box.scene"), 8, 250, 190, 0.014},
+                                   {test::room_of_balls(12, 12), 4, 250, 190, 0.024},
+                                   {test::room_of_balls(12, 12), 4, 640, 480, 0.014}};
   for (const Case& tested : cases) {
     RenderOptions options = small(140);  // about 256 lights
-    options.width = 250;                 // no multiple of any tile
-    options.height = 190;
+    options.width = tested.width;
+    options.height = tested.height;
     const Image all = picture(tested.scene, options, Backend::kGl);
     options.tile = tested.tile;
     const Image shared = picture(tested.scene, options, Backend::kGl);
@@ -259,7 +261,7 @@ TEST(Pictures, InterleavedByMapsComesClose) {
   const Image by_volumes = picture(scene, options, Backend::kGl);
   options.shadows = ShadowMethod::kMaps;
   const Image by_maps = picture(scene, options, Backend::kGl);
-  EXPECT_LT(mean_difference(by_maps, all), 0.02);
+  EXPECT_LT(mean_difference(by_maps, all), 0.024);
   EXPECT_LT(mean_difference(by_maps, by_volumes), 0.005);
   options.shadows = ShadowMethod::kCheaper;
   EXPECT_EQ(picture(scene, options, Backend::kGl).pixels, by_volumes.pixels);
@@ -307,6 +309,54 @@ std::optional<Scene> nave_by_its_windows(RenderOptions& options) {
     if (material.name.find("staklo") != std::string::npos) material.emission = Rgb(20.0f);
   }
   return scene;
+}
+
+/// Mouldings throw shadows of one or two pixels on what they lie on, which few shares have a pixel
+/// in. 1.4 %.
+TEST(Pictures, InterleavedComesCloseInsideSibenikByItsWindows) {
+  RenderOptions options = small(143);
+  options.width = 640;
+  options.height = 480;
+  const std::optional<Scene> scene = nave_by_its_windows(options);
+  if (!scene) GTEST_SKIP() << "the shared folder scenes/ogre is not there";
+  const Image exact = picture(*scene, options, Backend::kGl);
+  options.tile = 4;
+  EXPECT_LT(mean_difference(picture(*scene, options, Backend::kGl), exact), 0.02);
+}
+
+/// Below a ledge a line of shadow on a bright wall, one to two pixels wide: half of the shares see
+/// none of it.
+TEST(Pictures, InterleavedKnowsShadowsThatFewSharesSee) {
+  Scene scene;
+  scene.materials.resize(2);
+  scene.materials[0].reflectance = Rgb(0.5f);
+  scene.materials[1].emission = Rgb(10.0f);
+  Mesh wall, ledge, lamp;
+  wall.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 0.5f, 0}, {-1, 0.5f, 0}};
+  wall.triangles = {{0, 1, 2}, {0, 2, 3}};
+  ledge.positions = {{-1, 0, 0},      {1, 0, 0},         {1, 0, 0.006f},
+                     {-1, 0, 0.006f}, {1, 0.1f, 0.006f}, {-1, 0.1f, 0.006f}};
+  ledge.triangles = {{0, 1, 2}, {0, 2, 3}, {3, 2, 4}, {3, 4, 5}};
+  lamp.positions = {{-1, 3, 1}, {1, 3, 1}, {1, 3, 3}, {-1, 3, 3}};
+  lamp.triangles = {{0, 1, 2}, {0, 2, 3}};
+  lamp.material = to_id<MaterialId>(1);
+  scene.meshes = {wall, ledge, lamp};
+  for (std::uint32_t mesh = 0; mesh < 3; ++mesh) {
+    scene.instances.emplace_back().mesh = to_id<MeshId>(mesh);
+  }
+  RenderOptions options = small(256);
+  options.camera.eye = Vec3(0.0f, -0.05f, 1.0f);
+  options.camera.target = Vec3(0.0f, -0.05f, 0.0f);
+  const Image exact = picture(scene, options, Backend::kGl);
+  options.tile = 4;
+  const Image shared = picture(scene, options, Backend::kGl);
+  EXPECT_LT(mean_difference(shared, exact), 0.004);  // 1.1 % by the pixels around alone
+  const auto middle_of_row = [](const Image& image, std::size_t y) {
+    return image.pixels[y * 96 + 48].g;
+  };
+  ASSERT_EQ(middle_of_row(exact, 41), 0.0f);
+  ASSERT_GT(middle_of_row(exact, 44), 0.19f);
+  EXPECT_LT(middle_of_row(shared, 41), 0.01f);  // half as bright as the wall by those
 }
 
 /// Nearly all lights are hidden: were those seen that no pixel around can tell of, edges would

@@ -11,8 +11,8 @@ namespace {
 
 int round_up(int n, int step) { return (n + step - 1) / step * step; }
 
-/// A tile sees about a hundredth of the scene; further off its plane is another surface.
-float plane_distance(const ViewOptions& options) { return 1e-2f * options.radius; }
+/// What is further off a plane is another surface: a slab and the wall below it.
+float plane_distance(const ViewOptions& options) { return 1e-4f * options.radius; }
 
 /// Where a shadow ends each share knows to one of its pixels.
 constexpr float kSlack = 0.25f;
