@@ -30,6 +30,7 @@ struct Pixels {
 /// A pixel of a share.
 struct Witness {
   uint seen;     // bits of lights
+  vec4 plane;    // geometric normal, and how far along it; 0 if there is no surface
   vec4 strange;  // to each of the pixels that are shaded: 0 if it is on their surface
   vec4 weight;   // 0 if there is none
 };
@@ -53,19 +54,19 @@ Witness witness(ivec2 at, Pixels pixels) {
 #if AMID_PLANE
   vec4 dx = float(pixels.at.x - at.x) + vec4(0.0, 1.0, 2.0, 3.0);
   float dy = float(pixels.at.y - at.y);
-  return Witness(mask_at(place_among_shares(at, textureSize(u_masks, 0))), vec4(0.0),
+  return Witness(mask_at(place_among_shares(at, textureSize(u_masks, 0))), vec4(0.0), vec4(0.0),
                  1.0 / (dx * dx + dy * dy + 1e-6));
 #else
   ivec2 inside = clamp(at, ivec2(0), textureSize(u_points, 0) - 1);
   uvec4 bits = texel_of(u_points, inside);
-  if (inside != at || bits == uvec4(0u)) return Witness(0u, vec4(1e30), vec4(0.0));  // or the sky
+  if (inside != at || bits == uvec4(0u)) return Witness(0u, vec4(0.0), vec4(1e30), vec4(0.0));
   vec3 point = uintBitsToFloat(bits.xyz), normal = unpack_unit(bits.w);
   vec2 to0 = strange_and_weight(pixels.p0, point, normal);
   vec2 to1 = strange_and_weight(pixels.p1, point, normal);
   vec2 to2 = strange_and_weight(pixels.p2, point, normal);
   vec2 to3 = strange_and_weight(pixels.p3, point, normal);
   return Witness(mask_at(place_among_shares(at, textureSize(u_masks, 0))),
-                 vec4(to0.x, to1.x, to2.x, to3.x), vec4(to0.y, to1.y, to2.y, to3.y));
+                 vec4(normal, dot(normal, point)), vec4(to0.x, to1.x, to2.x, to3.x), vec4(to0.y, to1.y, to2.y, to3.y));
 #endif
 }
 
@@ -73,6 +74,8 @@ Witness witness(ivec2 at, Pixels pixels) {
 /// least strange to it.
 struct Witnesses {
   uvec4 seen;
+  bool are_strangers;  // some of them, to some of the pixels
+  mat4 planes;
   vec4 a, b, c, d;  // weights, in sum 1, or 0 if there are none
 };
 
@@ -82,6 +85,9 @@ Witnesses witnesses(ivec2 low, ivec2 high, Pixels pixels) {
   vec4 least = min(min(a.strange, b.strange), min(c.strange, d.strange));
   Witnesses w;
   w.seen = uvec4(a.seen, b.seen, c.seen, d.seen);
+  vec4 most = max(max(a.strange, b.strange), max(c.strange, d.strange));
+  w.are_strangers = any(greaterThan(most, vec4(0.0)));
+  w.planes = mat4(a.plane, b.plane, c.plane, d.plane);
   w.a = a.weight * vec4(lessThanEqual(a.strange, least));
   w.b = b.weight * vec4(lessThanEqual(b.strange, least));
   w.c = c.weight * vec4(lessThanEqual(c.strange, least));
@@ -117,26 +123,28 @@ void add(inout Given sum, Given more, vec4 part) {
 /// chance, as they are other lights. [James & Stein 1961, whose estimator shrinks by variance /
 /// difference²]
 vec4 more_seen(Given all, Given near) {
-  vec4 open = max(near.open, 1e-30), open_others = max(all.open - near.open, 1e-30);
+  const float kNothing = 1e-15;
+  vec4 open = max(near.open, kNothing), open_others = max(all.open - near.open, kNothing);
   vec4 seen = near.seen / open;
   vec4 difference = seen - (all.seen - near.seen) / open_others;
   // 1 / how many lights they are as good as.
   vec4 few = near.squares / (open * open);
   vec4 few_others = (all.squares - near.squares) / (open_others * open_others);
   // Of one light, seen or not. That all of a few are in shadow does not tell that others are.
-  vec4 variance = seen * (1.0 - seen) + 2.0 * few;
-  const float kSure = 6.0;
+  const float kOfFew = 4.0, kSure = 6.0;
+  vec4 variance = seen * (1.0 - seen) + kOfFew * few;
   vec4 chance = kSure * variance * (few + few_others) / max(difference * difference, 1e-30);
-  return max(1.0 - chance, 0.0) * difference * open_others / max(all.open, 1e-30);
+  vec4 any_near = vec4(greaterThan(near.open, vec4(kNothing)));
+  return any_near * max(1.0 - chance, 0.0) * difference * open_others / max(all.open, kNothing);
 }
 
-/// By how much to multiply what is seen.
-vec4 corrected(Given all, Given row, Given column, vec4 told, float lights) {
-  vec4 by_row = more_seen(all, row), by_column = more_seen(all, column);
-  vec4 more = mix(by_row, by_column, greaterThan(abs(by_column), abs(by_row)));
-  // Shares without a pixel around that sees any surface see as much as the others.
-  return max(all.seen + more * all.open, 0.0) / max(all.seen, 1e-30) * lights /
-         max(told, 1.0);
+/// Which of them the light could be seen from, were nothing between.
+vec4 facing(Witnesses w, Light light) {
+#if KIND == 2
+  return vec4(greaterThan(-(vec4(light.place.xyz, 0.0) * w.planes), vec4(0.0)));
+#else
+  return vec4(greaterThan(vec4(light.place.xyz, -1.0) * w.planes, vec4(0.0)));
+#endif
 }
 #endif
 
@@ -149,8 +157,9 @@ void main() {
   vec3 sum0 = vec3(0.0), sum1 = vec3(0.0), sum2 = vec3(0.0), sum3 = vec3(0.0);
 #if !AMID_PLANE
   Given all = nothing(), row = nothing(), column = nothing();
-  vec4 told = vec4(0.0);
-  float lights_of_all = 0.0;
+  // Of what lights give, were nothing between, where strangers are: of which anybody tells, what of
+  // it is seen, and of which nobody does.
+  vec4 told = vec4(0.0), told_seen = vec4(0.0), untold = vec4(0.0);
 #endif
   int share = 0;
   do {
@@ -164,13 +173,27 @@ void main() {
 #if !AMID_PLANE
     Given given = nothing();
 #endif
-    uint left = seen_by_any(w.seen, count);
+    uint any_sees = seen_by_any(w.seen, count), left = any_sees;
+#if !AMID_PLANE
+    // On another surface they may not face what the pixels do.
+    if (w.are_strangers) left = lowest_bits(count);
+#endif
     if (left != 0u) {
       do {
         int i = number_of(lowest(left));
         Light light = u_lights[first + i];
         vec4 see = vec4(bit(w.seen, i));
+#if AMID_PLANE
         vec4 seen = sharpened(see.x * w.a + see.y * w.b + see.z * w.c + see.w * w.d);
+#else
+        vec4 can = facing(w, light);
+        see *= can;
+        vec4 could = can.x * w.a + can.y * w.b + can.z * w.c + can.w * w.d;
+        vec4 seen = see.x * w.a + see.y * w.b + see.z * w.c + see.w * w.d;
+        // Of what these cannot tell the others may.
+        vec4 by_any = vec4(any(greaterThan(see, vec4(0.0))));
+        seen = mix(by_any, sharpened(seen / max(could, 1e-30)), greaterThan(could, vec4(0.0)));
+#endif
         vec3 e0 = irradiance_from(light, pixels.p0), e1 = irradiance_from(light, pixels.p1);
         vec3 e2 = irradiance_from(light, pixels.p2), e3 = irradiance_from(light, pixels.p3);
         sum0 += seen.x * e0;
@@ -179,6 +202,13 @@ void main() {
         sum3 += seen.w * e3;
 #if !AMID_PLANE
         vec4 open = vec4(brightness(e0), brightness(e1), brightness(e2), brightness(e3));
+        if (w.are_strangers) {
+          bool is_told = any(greaterThan(can, vec4(0.0)));
+          told += is_told ? open : vec4(0.0);
+          told_seen += is_told ? seen * open : vec4(0.0);
+          untold += is_told ? vec4(0.0) : open;
+        }
+        open *= float((any_sees >> uint(i)) & 1u);
         given.open += open;
         given.seen += seen * open;
         given.squares += open * open;
@@ -187,17 +217,18 @@ void main() {
       } while (left != 0u);
     }
 #if !AMID_PLANE
-    vec4 is_told = vec4(greaterThan(w.a + w.b + w.c + w.d, vec4(0.0)));
     ivec4 columns = at.x + ivec4(0, 1, 2, 3);
     add(all, given, vec4(1.0));
     add(row, given, vec4(share / TILE == at.y % TILE));
     add(column, given, vec4(equal(columns % TILE, ivec4(share % TILE))));
-    told += is_told * float(count);
-    lights_of_all += float(count);
 #endif
   } while (++share < TILE * TILE);
 #if !AMID_PLANE
-  vec4 factor = corrected(all, row, column, told, lights_of_all);
+  vec4 by_row = more_seen(all, row), by_column = more_seen(all, column);
+  vec4 more = mix(by_row, by_column, greaterThan(abs(by_column), abs(by_row)));
+  // Of lights of which nobody tells as much is seen as of the others.
+  vec4 seen = max(all.seen + more * all.open, 0.0) + untold * told_seen / max(told, 1e-30);
+  vec4 factor = seen / max(all.seen, 1e-30);
   sum0 *= factor.x;
   sum1 *= factor.y;
   sum2 *= factor.z;
