@@ -159,7 +159,7 @@ bool is_in_way(inout Question open, Receiver p) {
   // What has holes stops what goes through its texel. A triangle that is smaller than a texel
   // stands for others like it, which rays do not find: leaves, gravel.
   bool has_holes = (seen & kHoles) != 0u;
-  float size = 0.5 * open.reach;  // which is a texel's diagonal
+  float size = 0.65 * open.reach;  // half of it is a texel's diagonal
   vec3 bc = ac - ab;
   float longest = max(dot(ab, ab), max(dot(ac, ac), dot(bc, bc)));
   bool is_tiny = open.steps == 0 && seen == open.nearest && longest < size * size;

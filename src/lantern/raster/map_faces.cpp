@@ -110,9 +110,10 @@ MapFace parallel_face(const MapFrame& frame, const Bounds& bounds, int size, Cli
 }  // namespace
 
 int octahedron_size(std::size_t casters) {
-  // Among many triangles more edges of shadows have to be told apart.
-  constexpr std::size_t kMany = 10'000;
-  return casters < kMany ? 256 : 384;
+  // Among many triangles more edges of shadows have to be told apart: lights that shine to one side
+  // have two texels a triangle or more, until maps would take too much memory.
+  constexpr std::size_t kMany = 10'000, kVeryMany = 40'000;
+  return casters < kMany ? 256 : casters < kVeryMany ? 384 : 512;
 }
 
 int map_size(LightFormula formula, int octahedron) {
