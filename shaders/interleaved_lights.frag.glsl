@@ -104,7 +104,8 @@ Witnesses witnesses(ivec2 low, ivec2 high, Pixels pixels) {
 vec4 sharpened(vec4 seen) { return clamp(2.0 * seen - 0.5, 0.0, 1.0); }
 
 #if !AMID_PLANE
-/// Of the lights of some shares which any of their pixels around sees, and for each of the pixels.
+/// Of the lights of some shares which any of the pixels around sees that count, for each of those
+/// that are shaded.
 struct Given {
   vec4 open;     // what they give, were nothing between: brightness
   vec4 seen;     // and what of it is seen
@@ -131,7 +132,7 @@ vec4 more_seen(Given all, Given near) {
   vec4 few = near.squares / (open * open);
   vec4 few_others = (all.squares - near.squares) / (open_others * open_others);
   // Of one light, seen or not. That all of a few are in shadow does not tell that others are.
-  const float kOfFew = 4.0, kSure = 6.0;
+  const float kOfFew = 4.0, kSure = 3.0;
   vec4 variance = seen * (1.0 - seen) + kOfFew * few;
   vec4 chance = kSure * variance * (few + few_others) / max(difference * difference, 1e-30);
   vec4 any_near = vec4(greaterThan(near.open, vec4(kNothing)));
@@ -173,7 +174,7 @@ void main() {
 #if !AMID_PLANE
     Given given = nothing();
 #endif
-    uint any_sees = seen_by_any(w.seen, count), left = any_sees;
+    uint left = seen_by_any(w.seen, count);
 #if !AMID_PLANE
     // On another surface they may not face what the pixels do.
     if (w.are_strangers) left = lowest_bits(count);
@@ -190,6 +191,7 @@ void main() {
         see *= can;
         vec4 could = can.x * w.a + can.y * w.b + can.z * w.c + can.w * w.d;
         vec4 seen = see.x * w.a + see.y * w.b + see.z * w.c + see.w * w.d;
+        vec4 is_seen = vec4(greaterThan(seen, vec4(0.0)));
         // Of what these cannot tell the others may.
         vec4 by_any = vec4(any(greaterThan(see, vec4(0.0))));
         seen = mix(by_any, sharpened(seen / max(could, 1e-30)), greaterThan(could, vec4(0.0)));
@@ -208,7 +210,7 @@ void main() {
           told_seen += is_told ? seen * open : vec4(0.0);
           untold += is_told ? vec4(0.0) : open;
         }
-        open *= float((any_sees >> uint(i)) & 1u);
+        open *= is_seen;
         given.open += open;
         given.seen += seen * open;
         given.squares += open * open;
@@ -227,8 +229,9 @@ void main() {
   vec4 by_row = more_seen(all, row), by_column = more_seen(all, column);
   vec4 more = mix(by_row, by_column, greaterThan(abs(by_column), abs(by_row)));
   // Of lights of which nobody tells as much is seen as of the others.
-  vec4 seen = max(all.seen + more * all.open, 0.0) + untold * told_seen / max(told, 1e-30);
-  vec4 factor = seen / max(all.seen, 1e-30);
+  vec4 sum = vec4(brightness(sum0), brightness(sum1), brightness(sum2), brightness(sum3));
+  vec4 seen = max(sum + more * all.open, 0.0) + untold * told_seen / max(told, 1e-30);
+  vec4 factor = seen / max(sum, 1e-30);
   sum0 *= factor.x;
   sum1 *= factor.y;
   sum2 *= factor.z;
