@@ -66,7 +66,8 @@ Witness witness(ivec2 at, Pixels pixels) {
   vec2 to2 = strange_and_weight(pixels.p2, point, normal);
   vec2 to3 = strange_and_weight(pixels.p3, point, normal);
   return Witness(mask_at(place_among_shares(at, textureSize(u_masks, 0))),
-                 vec4(normal, dot(normal, point)), vec4(to0.x, to1.x, to2.x, to3.x), vec4(to0.y, to1.y, to2.y, to3.y));
+                 vec4(normal, dot(normal, point)), vec4(to0.x, to1.x, to2.x, to3.x),
+                 vec4(to0.y, to1.y, to2.y, to3.y));
 #endif
 }
 
